@@ -33,14 +33,14 @@ impl FixtureTool {
 impl Cell {
     /// Rules of a run: a guided tool may touch what the shield of its fixture opens.
     pub fn opened_pairs(&self) -> PairRules {
-        let opened = |fixture: &CellFixture| {
-            let is_on = |o: &&CellOperator| fixture.active && fixture.tool == Some(o.tool);
+        let opened = |(index, fixture): (usize, &CellFixture)| {
+            let is_on = |o: &&CellOperator| o.may_open(index, fixture);
             let operator = self.guidance.operators.iter().find(is_on)?;
             let link = GeometryId::Link { robot: operator.robot, link: operator.tool.link(self) };
             let edit = PairEdit::Skip(format!("the shield of {} guards it", fixture.name));
             Some(PairRule { a: link.into(), b: Selection::Object(fixture.protects), edit })
         };
-        self.guidance.fixtures.iter().filter_map(opened).collect()
+        self.guidance.fixtures.iter().enumerate().filter_map(opened).collect()
     }
 }
 

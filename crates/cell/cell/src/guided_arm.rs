@@ -13,9 +13,10 @@ use elbowroom_shared_control::force::{
     ArmField, ArmForces, BodySettings, FieldPair, ImpedancePort, ImpedanceSettings, Response, VirtualBody,
 };
 use elbowroom_shared_control::{GuidedArm, NavigatorError, ProtectedSurface, SurfaceNavigator};
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::Vec3;
 
-use crate::{Cell, CellFixture, CellForce, CellOperator, ForceOther, ForceResponse};
+use crate::operated_arm::{FixturesOn, SurfaceOwner};
+use crate::{Cell, CellFixture, CellForce, CellOperator, FixtureRef, ForceOther, ForceResponse, OperatedArm};
 
 /// Chord error of curved surfaces and tools, metres.
 const CHORD_M: f64 = 1e-4;
@@ -37,20 +38,21 @@ impl CellOperator {
         cell: &Cell,
         scene: &'s Scene,
         notes: &mut Vec<Diagnostic>,
-    ) -> Result<GuidedArm<'s>, Diagnostic> {
+    ) -> Result<OperatedArm<'s>, Diagnostic> {
         let robot = &cell.robots[self.robot.0];
         let refused = |what: String| Diagnostic::new(&cell.file, self.line, what);
-        let Some((collider, tcp_in_link)) = self.tool.solid(cell) else {
+        let Some((_, tcp_in_link)) = self.tool.solid(cell) else {
             return Err(refused(format!("the tool of \"{}\" has no solid", robot.name)));
         };
         let link = self.tool.link(cell);
-        let tool = placed(&collider.shape, &(tcp_in_link.inverse() * collider.in_link));
-        let tool = tool.ok_or_else(|| refused(format!("the tool of \"{}\" has no surface", robot.name)))?;
+        let tool =
+            self.tool_surface(cell).ok_or_else(|| refused(format!("the tool of \"{}\" has no surface", robot.name)))?;
         let mut chain_state = ChainState::new(&robot.robot.chain);
         chain_state.q.copy_from_slice(&robot.start);
         robot.robot.chain.forward(&mut chain_state);
         let tool_in_world = robot.base_in_world * chain_state.link_in_root(link) * tcp_in_link;
-        let (surfaces, shields_from) = self.surfaces(cell, notes)?;
+        let on = FixturesOn::at(cell, self, f64::NEG_INFINITY);
+        let (surfaces, owners) = self.surfaces(cell, &on, notes)?;
         let navigator = SurfaceNavigator::new(tool, surfaces, tool_in_world, self.settings)
             .map_err(|e| refused(format!("operator \"{}\": {}", self.name, in_words(e, cell))))?;
         let solver = IkSolver::new(&robot.robot.chain, link, tcp_in_link, IkOptions::default());
@@ -62,7 +64,7 @@ impl CellOperator {
         let speeds = robot.limits.iter().map(|limits| limits.velocity).collect();
         let mut arm = GuidedArm::new(navigator, solver, (scene, self.robot), state, speeds)
             .map_err(|_| refused(format!("\"{}\" cannot hold its tool point at its start", robot.name)))?;
-        let guide = cell.guidance.guides.iter().find(|g| g.active && g.tool == self.tool);
+        let guide = on.guide().map(|index| &cell.guidance.guides[index]);
         if let Some(g) = guide
             && g.guide.distance_m(tool_in_world.translation) > FAR_FROM_GUIDE_M
         {
@@ -71,19 +73,36 @@ impl CellOperator {
             notes.push(Diagnostic::new(&cell.file, g.line, what).hint("a guide through the tool point at its start"));
         }
         arm.set_guide(guide.map(|g| g.guide.clone()));
-        let forces = self.forces(cell, scene, shields_from, (link, tcp_in_link.translation));
+        let forces = self.forces(cell, scene, &owners, (link, tcp_in_link.translation));
         if let Some(forces) = forces.map_err(|e| refused(e.to_string()))? {
             arm.set_forces(forces);
         }
-        Ok(arm)
+        Ok(OperatedArm { arm, surfaces: owners, on, refused: None })
     }
 
-    /// The forces of the tool; `None` without. `shields_from` is the index of its first shield among the surfaces.
+    /// The surface of the tool in the frame of its point. If a shield may let its link into an object, everything on that
+    /// link belongs to it.
+    fn tool_surface(&self, cell: &Cell) -> Option<Arc<TriMesh>> {
+        let (solid, tcp_in_link) = self.tool.solid(cell)?;
+        let is_let_in = cell.guidance.fixtures.iter().enumerate().any(|(index, f)| self.may_open(index, f));
+        let on_link = &cell.robots[self.robot.0].robot.colliders[self.tool.link(cell).0];
+        let parts = if is_let_in { on_link.as_slice() } else { std::slice::from_ref(solid) };
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for part in parts {
+            let mesh = triangle_surface(&part.shape, CHORD_M)?;
+            let (first, in_tcp) = (vertices.len() as u32, tcp_in_link.inverse() * part.in_link);
+            vertices.extend(mesh.vertices().iter().map(|p| in_tcp.transform_point(*p)));
+            triangles.extend(mesh.triangles().iter().map(|corners| corners.map(|corner| corner + first)));
+        }
+        TriMesh::new(vertices, triangles).ok().map(Arc::new)
+    }
+
+    /// The forces of the tool, which glides along the surfaces of `owners`; `None` without.
     fn forces<'s>(
         &self,
         cell: &Cell,
         scene: &'s Scene,
-        shields_from: usize,
+        owners: &[SurfaceOwner],
         tool: (LinkId, Vec3),
     ) -> Result<Option<ArmForces<'s>>, NavigatorError> {
         let own: Vec<&CellForce> = cell.guidance.forces.iter().filter(|f| f.tool == self.tool).collect();
@@ -102,8 +121,8 @@ impl CellOperator {
                     .map(|link| FieldPair::Scene(Selection::Link { robot, link }, Selection::Object(object)))
                     .collect(),
                 ForceOther::Shield(index) => {
-                    let before = cell.guidance.fixtures[..index].iter().filter(|f| self.is_shielded_by(f)).count();
-                    vec![FieldPair::Surface(shields_from + before)]
+                    let surface = owners.iter().position(|owner| *owner == SurfaceOwner::Shield(index));
+                    surface.map(FieldPair::Surface).into_iter().collect()
                 }
             }
         };
@@ -126,24 +145,36 @@ impl CellOperator {
         Ok(Some(ArmForces::new(response, fields, (scene, robot), tool)))
     }
 
-    /// Whether the shield of a fixture guards the tool.
-    fn is_shielded_by(&self, fixture: &CellFixture) -> bool {
-        fixture.active && fixture.tool == Some(self.tool)
+    /// Whether a fixture, by its index, is on for the tool at some time.
+    pub(crate) fn may_open(&self, index: usize, fixture: &CellFixture) -> bool {
+        fixture.tool == Some(self.tool) && self.switches.is_ever_on(FixtureRef::Shield(index), fixture.active)
     }
 
-    /// The surfaces along which the tool glides, and the index of the first one that is a shield.
-    fn surfaces(&self, cell: &Cell, notes: &mut Vec<Diagnostic>) -> Result<(Vec<ProtectedSurface>, usize), Diagnostic> {
-        let mut surfaces = Vec::new();
-        let shields: Vec<_> = cell.guidance.fixtures.iter().filter(|f| self.is_shielded_by(f)).collect();
+    /// The surfaces along which the tool glides, objects first, and what each belongs to.
+    fn surfaces(
+        &self,
+        cell: &Cell,
+        on: &FixturesOn,
+        notes: &mut Vec<Diagnostic>,
+    ) -> Result<(Vec<ProtectedSurface>, Vec<SurfaceOwner>), Diagnostic> {
+        let (mut surfaces, mut owners) = (Vec::new(), Vec::new());
+        let mut add = |surface: ProtectedSurface, owner: SurfaceOwner| {
+            surfaces.push(surface.switched(on.keep_off(cell, owner)));
+            owners.push(owner);
+        };
+        let fixtures = || cell.guidance.fixtures.iter().enumerate().filter(|(index, f)| self.may_open(*index, f));
+        let is_always_on =
+            |(index, f): &(usize, &CellFixture)| !self.switches.is_ever_off(FixtureRef::Shield(*index), f.active);
         for (index, object) in cell.objects.iter().enumerate() {
             let id = ObjectId(index);
-            if cell.moving_objects.iter().any(|m| m.object == id) || shields.iter().any(|f| f.protects == id) {
+            let is_replaced = fixtures().filter(is_always_on).any(|(_, f)| f.protects == id);
+            if is_replaced || cell.moving_objects.iter().any(|m| m.object == id) {
                 continue;
             }
             let surface = triangle_surface(&object.shape, CHORD_M);
             let protected = surface.map(|mesh| ProtectedSurface::new(mesh, object.in_world));
             match protected {
-                Some(Ok(surface)) => surfaces.push(surface),
+                Some(Ok(surface)) => add(surface, SurfaceOwner::Object(id)),
                 Some(Err(e)) => {
                     let what = format!(
                         "\"{}\" stops the tool of operator \"{}\", which cannot glide along it: {e}",
@@ -154,23 +185,15 @@ impl CellOperator {
                 None => {}
             }
         }
-        let shields_from = surfaces.len();
-        for fixture in shields {
+        for (index, fixture) in fixtures() {
             let in_world = cell.objects[fixture.protects.0].in_world;
             let shield = ProtectedSurface::new(fixture.shield(cell)?.mesh, in_world);
             let refused =
                 |e: NavigatorError| Diagnostic::new(&cell.file, fixture.line, format!("the shield is not usable: {e}"));
-            surfaces.push(shield.map_err(refused)?);
+            add(shield.map_err(refused)?, SurfaceOwner::Shield(index));
         }
-        Ok((surfaces, shields_from))
+        Ok((surfaces, owners))
     }
-}
-
-/// The surface of a solid in another frame.
-fn placed(shape: &elbowroom_proximity::Shape, in_frame: &Pose) -> Option<Arc<TriMesh>> {
-    let mesh = triangle_surface(shape, CHORD_M)?;
-    let vertices = mesh.vertices().iter().map(|p| in_frame.transform_point(*p)).collect();
-    TriMesh::new(vertices, mesh.triangles().to_vec()).ok().map(Arc::new)
 }
 
 fn in_words(e: NavigatorError, cell: &Cell) -> String {

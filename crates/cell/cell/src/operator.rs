@@ -6,7 +6,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_shared_control::NavigatorSettings;
 use elbowroom_spatial::Pose;
 
-use crate::FixtureTool;
+use crate::{FixtureSwitches, FixtureTool};
 
 /// An operator: `[operator.NAME]`.
 #[derive(Debug, Clone)]
@@ -21,6 +21,8 @@ pub struct CellOperator {
     pub tool: FixtureTool,
     /// The desired poses of its tool point.
     pub stream: OperatorStream,
+    /// When it switches which fixtures.
+    pub switches: FixtureSwitches,
     /// Distances and speeds.
     pub settings: NavigatorSettings,
 }

@@ -41,6 +41,7 @@ mod operator_summary;
 mod recording;
 pub mod replanning;
 pub mod run;
+mod starts;
 mod summary;
 mod virtual_robot_summary;
 
@@ -54,5 +55,6 @@ pub use recording::{
     RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, VirtualRobotSample, VirtualRobotTrack, WorkPieceStop,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
+pub use starts::check_starts;
 pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};
 pub use virtual_robot_summary::{HandOverSummary, VirtualRobotSummary};

@@ -2,6 +2,7 @@
 
 use elbowroom::cell::Cell;
 use elbowroom::sim::check::{EntryCheck, recordings, table};
+use elbowroom::sim::check_starts;
 use serde::Serialize;
 
 use crate::args::CheckArgs;
@@ -33,6 +34,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let checks = Simulation::of(&cell).check()?;
+    check_starts(&cell)?;
     for w in recordings(&cell) {
         note(format_args!("warning: {w}"));
     }

@@ -151,18 +151,26 @@ fn the_end_of_the_reach_and_a_start_in_the_work_are_told() {
     // Far from the work no gap is told.
     assert!(answer["operators"][0]["least_gap_m"].is_null(), "{answer}");
     write(dir.path(), &CELL.replace("at = [1150, 0, 1200]", "at = [1150, 0, 1258.7]"), across, 1.0);
-    let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
-    assert!(message.contains("cell.toml:14") && message.contains("from a surface"), "{message}");
+    for command in ["check", "run"] {
+        let message = elbowroom(dir.path(), &[command, "cell.toml"]).expect(2).stderr;
+        assert!(message.contains("cell.toml:14") && message.contains("from a surface"), "{command}: {message}");
+    }
 }
+
+/// The tool looks straight down on a small block.
+fn above_a_block() -> String {
+    let down = CELL.replace("start = [0, 0, 0, 0, 35, 0]", "start = [0, 0, 0, 0, 90, 0]");
+    let work = "size = [80, 80, 60]\nat = [1016.5, 0, 1210]";
+    down.replace("size = [400, 400, 200]\nat = [1150, 0, 1200]", work)
+}
+
+/// A hole in the block.
+const HOLE: &str = "[fixture.hole]\nprotects = \"work\"\ntarget = { drill = { at = [1016.5, 0, 1240], axis = [0, 0, -1], depth = 20 } }\nwidth = 24\noffset = 5\ntolerance = 2\ntool = \"arm\"\n";
 
 #[test]
 fn a_fixture_opens_the_work_for_its_tool() {
     let dir = tempfile::tempdir().unwrap();
-    // The tool looks straight down.
-    let down = CELL.replace("start = [0, 0, 0, 0, 35, 0]", "start = [0, 0, 0, 0, 90, 0]");
-    let fixture = "[fixture.hole]\nprotects = \"work\"\ntarget = { drill = { at = [1016.5, 0, 1240], axis = [0, 0, -1], depth = 20 } }\nwidth = 24\noffset = 5\ntolerance = 2\ntool = \"arm\"\n";
-    let work = "size = [80, 80, 60]\nat = [1016.5, 0, 1210]";
-    let cell = down.replace("size = [400, 400, 200]\nat = [1150, 0, 1200]", work);
+    let cell = above_a_block();
     let hand = |t_s: f64| [1016.5, 0.0, 1330.0 - 60.0 * t_s.min(2.0)];
     let lowest = |cell: &str| {
         write(dir.path(), cell, hand, 4.0);
@@ -171,18 +179,60 @@ fn a_fixture_opens_the_work_for_its_tool() {
         elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0);
         rows(dir.path()).iter().map(|row| row.z_m).fold(f64::INFINITY, f64::min)
     };
-    let (closed, opened) = (lowest(&cell), lowest(&format!("{cell}{fixture}")));
+    let (closed, opened) = (lowest(&cell), lowest(&format!("{cell}{HOLE}")));
     assert!(closed > 1.24 && closed < 1.242, "{closed}");
     assert!(opened < 1.224 && opened > 1.218, "{opened}");
     // Only a run leaves the pair out: elsewhere a tool in the work is a collision.
     let inside = cell.replace("at = [1016.5, 0, 1210]", "at = [924, 0, 1250]");
     write(
         dir.path(),
-        &format!("{inside}{fixture}").replace("drill = { at = [1016.5, 0, 1240]", "drill = { at = [924, 0, 1280]"),
+        &format!("{inside}{HOLE}").replace("drill = { at = [1016.5, 0, 1240]", "drill = { at = [924, 0, 1280]"),
         hand,
         0.1,
     );
     elbowroom(dir.path(), &["query", "cell.toml", "--ask", "collision"]).expect(1);
+}
+
+#[test]
+fn a_stream_switches_a_fixture_unless_the_tool_is_in_its_opening() {
+    let dir = tempfile::tempdir().unwrap();
+    let hand = |t_s: f64| [1016.5, 0.0, (1330.0 - 60.0 * t_s.min(2.0)).max(1330.0 - 60.0 * (6.0 - t_s))];
+    write(dir.path(), &format!("{}{HOLE}", above_a_block()), hand, 6.0);
+    let text = std::fs::read_to_string(dir.path().join("hand.csv")).unwrap().replace(TURN, "1,0,0,0");
+    let switched = |line: &str| {
+        let Ok(t_s) = line.split(',').next().unwrap().parse::<f64>() else { return format!("{line},fixture.hole\n") };
+        format!("{line},{}\n", u8::from((2.0..3.5).contains(&t_s)))
+    };
+    let stream: String = text.lines().map(switched).collect();
+    std::fs::write(dir.path().join("hand.csv"), &stream).unwrap();
+    elbowroom(dir.path(), &["run", "cell.toml", "--out", "out"]).expect(0);
+    let events = std::fs::read_to_string(dir.path().join("out/events.csv")).unwrap();
+    let of_hole: Vec<(f64, &str)> = events
+        .lines()
+        .filter_map(|line| line.split_once(",arm,hole,"))
+        .map(|(t_s, event)| (t_s.parse().unwrap(), event))
+        .collect();
+    assert_eq!(of_hole.iter().map(|(_, event)| *event).collect::<Vec<_>>(), ["off", "on", "refuse", "off"], "{events}");
+    assert!(of_hole[0].0 == 0.0 && of_hole[1].0 == 2.0 && of_hole[2].0 == 3.5, "{of_hole:?}");
+    let tick_s = 0.002;
+    let rows = rows(dir.path());
+    let row = |t_s: f64| &rows[(t_s / tick_s) as usize];
+    assert!(rows[..(2.0 / tick_s) as usize].iter().all(|row| row.z_m > 1.24), "closed at first");
+    assert!(row(3.4).z_m < 1.224, "open: {}", row(3.4).z_m);
+    assert!(row(of_hole[3].0).z_m > 1.24, "closed again when the tool has left: {}", row(of_hole[3].0).z_m);
+    // A fixture that is not there, and forces that would not follow.
+    std::fs::write(dir.path().join("hand.csv"), stream.replace("fixture.hole", "fixture.hle")).unwrap();
+    let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
+    assert!(message.contains("fixture.hle") && message.contains("fixture.hole"), "{message}");
+    std::fs::write(dir.path().join("hand.csv"), stream).unwrap();
+    let force = "[force.soft]\nbetween = [\"arm/tool\", \"hole\"]\nlaw = \"repulsive\"\nrange = 9\n";
+    std::fs::write(
+        dir.path().join("cell.toml"),
+        std::fs::read_to_string(dir.path().join("cell.toml")).unwrap() + force,
+    )
+    .unwrap();
+    let message = elbowroom(dir.path(), &["run", "cell.toml"]).expect(2).stderr;
+    assert!(message.contains("switches fixtures") && message.contains("cell.toml:"), "{message}");
 }
 
 #[test]

@@ -103,9 +103,12 @@ fn wrong_tables_are_refused_at_their_line() {
             cell.replacen(from, to, 1)
         };
         write(dir.path(), change, 1.0);
-        let answer = elbowroom(dir.path(), &["run", "cell.toml"]);
-        assert_eq!(answer.status, 2, "{to}: {}", answer.stderr);
-        assert!(answer.stderr.contains(expected), "{to}: {}", answer.stderr);
-        assert!(answer.stderr.contains("cell.toml:") || answer.stderr.contains("bor.csv"), "{to}: {}", answer.stderr);
+        for command in ["check", "run"] {
+            let answer = elbowroom(dir.path(), &[command, "cell.toml"]);
+            assert_eq!(answer.status, 2, "{command}, {to}: {}", answer.stderr);
+            assert!(answer.stderr.contains(expected), "{command}, {to}: {}", answer.stderr);
+            let is_placed = answer.stderr.contains("cell.toml:") || answer.stderr.contains("bor.csv");
+            assert!(is_placed, "{command}, {to}: {}", answer.stderr);
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! How much of random motions two or three arms carry out, and how often they stop, beside one arm alone and hand-overs only
-//! at a limit: `cargo bench -p elbowroom-cooperation --bench carrying -- [MOTIONS] [ARMS] [FOLDER]`.
+//! at a limit: `cargo bench -p elbowroom-cooperation --bench carrying -- [MOTIONS] [ARMS] [FIRST] [--real] [--out FOLDER]`.
 //!
-//! With a folder, only motions with foresight run, and are written for `benches/python/continuous_check.py`.
+//! FIRST is the number of the first motion. With `--real`, each motion has arms of the data, of similar size, instead of two
+//! RX60B. With a folder, only motions with foresight run, and are written for `benches/python/continuous_check.py`.
 
 #![allow(clippy::print_stdout, reason = "a bench prints")]
 
@@ -12,10 +13,15 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use common::{BAR_M, HAND_M, HAND_WIDE_M, Outcome, Pair, THIN_M, carry, carry_seen, motion, part_pose};
+use common::{
+    ArmModel, BAR_M, HAND_M, HAND_WIDE_M, Outcome, Pair, THIN_M, carry, carry_seen, motion, one_arm_covers, part_pose,
+};
 use elbowroom_cooperation::{CooperationSettings, VirtualRobot};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::SplitMix;
+
+/// Distance of the arms of the data from the middle, and largest distance of their motions from it, for arms of size 1, m.
+const REAL: (f64, f64) = (0.8, 0.55);
 
 /// Sums over motions.
 #[derive(Default)]
@@ -27,84 +33,137 @@ struct Totals {
     contacts: usize,
     deviation_m: f64,
     step_us: Vec<f64>,
+    seconds: f64,
+}
+
+impl Totals {
+    fn add(&mut self, outcome: Outcome, begin: Instant) {
+        self.share += outcome.share;
+        self.whole += usize::from(outcome.share > 0.999);
+        self.stopped_s += outcome.stopped_s;
+        self.hand_overs += outcome.hand_overs.len();
+        self.contacts += outcome.contacts;
+        self.deviation_m = self.deviation_m.max(outcome.deviation_m);
+        self.step_us.extend(outcome.step_us);
+        self.seconds += begin.elapsed().as_secs_f64();
+    }
+
+    fn print(mut self, name: &str, motions: usize) {
+        self.step_us.sort_by(f64::total_cmp);
+        let step = |share: f64| self.step_us[((self.step_us.len() - 1) as f64 * share) as usize];
+        println!(
+            "{name:10} {:.3} {:3} {:7.1} {:4} {} {:.1e}  {} steps, µs median {:.0}, p99 {:.0}, most {:.0}  ({:.0} s)",
+            self.share / motions as f64,
+            self.whole,
+            self.stopped_s,
+            self.hand_overs,
+            self.contacts,
+            self.deviation_m,
+            self.step_us.len(),
+            step(0.5),
+            step(0.99),
+            step(1.0),
+            self.seconds
+        );
+    }
 }
 
 fn main() {
     let words: Vec<String> = elbowroom_testkit::bench::arguments().collect();
     let numbers: Vec<usize> = words.iter().filter_map(|word| word.parse().ok()).collect();
-    let folder = words.iter().find(|word| word.parse::<usize>().is_err()).map(PathBuf::from);
-    let (motions, arms) = (numbers.first().copied().unwrap_or(20), numbers.get(1).copied().unwrap_or(2));
-    let pair = Pair::new(arms, 0.6);
-    let foresight = CooperationSettings::default();
-    let at_limits = CooperationSettings { horizon_s: 0.05, ..foresight };
-    let alone = Pair::alone(arms, 0.6);
+    let number = |index: usize, usual: usize| numbers.get(index).copied().unwrap_or(usual);
+    let (motions, count, first) = (number(0, 20), number(1, 2), number(2, 0));
+    let folder = words.iter().position(|word| word == "--out").map(|at| PathBuf::from(&words[at + 1]));
+    let models = if words.iter().any(|word| word == "--real") { real_arms() } else { vec![ArmModel::rx60b()] };
     if let Some(folder) = &folder {
         std::fs::create_dir_all(folder).unwrap();
-        std::fs::write(folder.join("cell.json"), setup(&pair)).unwrap();
+    }
+    let foresight = CooperationSettings::default();
+    let at_limits = CooperationSettings { horizon_s: 0.05, ..foresight };
+    let mut all = [Totals::default(), Totals::default(), Totals::default()];
+    let mut covered = 0;
+    for index in first..first + motions {
+        let mut random = SplitMix(11 + index as u64);
+        let (arms, pair, way) = task(&models, &mut random, count);
+        covered += usize::from(one_arm_covers(&pair, &way));
+        let begin = Instant::now();
+        if let Some(folder) = &folder {
+            std::fs::write(folder.join(format!("cell_{index:03}.json")), setup(&pair, &arms)).unwrap();
+            let outcome = recorded(&pair, foresight, &way, &folder.join(format!("motion_{index:03}.csv")));
+            all[0].add(outcome, begin);
+            continue;
+        }
+        let names: Vec<_> = arms.iter().map(|arm| arm.file.file_stem().unwrap().to_string_lossy()).collect();
+        let outcome = carry(&pair, foresight, &way);
+        println!("{index} {} {:.3} {:?}", names.join(" "), outcome.share, outcome.last_hold);
+        all[0].add(outcome, begin);
+        let begin = Instant::now();
+        all[1].add(carry(&pair, at_limits, &way), begin);
+        let begin = Instant::now();
+        all[2].add(carry(&pair.with_one_hand(), foresight, &way), begin);
     }
     println!(
-        "{motions} motions, {arms} arms; share carried, whole motions, stopped s, hand-overs, contacts, largest deviation m"
+        "{motions} motions, {count} arms, {covered} could be carried by one of them; share carried, whole motions, stopped s, hand-overs, contacts, largest deviation m"
     );
-    let strategies = [("foresight", &pair, foresight), ("at limits", &pair, at_limits), ("one arm", &alone, foresight)];
-    let count = if folder.is_some() { 1 } else { strategies.len() };
-    for (name, pair, settings) in strategies.into_iter().take(count) {
-        let (mut random, mut totals) = (SplitMix(11), Totals::default());
-        let begin = Instant::now();
-        for index in 0..motions {
-            // Equal motions for every strategy.
-            let way = motion(&mut random, &Pair::new(arms, 0.6), part_pose(pair), 0.4, 3);
-            let outcome = match &folder {
-                Some(folder) => recorded(pair, settings, &way, &folder.join(format!("motion_{index:03}.csv"))),
-                None => carry(pair, settings, &way),
-            };
-            totals.share += outcome.share / motions as f64;
-            totals.whole += usize::from(outcome.share > 0.999);
-            totals.stopped_s += outcome.stopped_s;
-            totals.hand_overs += outcome.hand_overs.len();
-            totals.contacts += outcome.contacts;
-            totals.deviation_m = totals.deviation_m.max(outcome.deviation_m);
-            totals.step_us.extend(outcome.step_us);
+    let done = all.into_iter().zip(["foresight", "at limits", "one arm"]).filter(|(totals, _)| totals.seconds > 0.0);
+    done.for_each(|(totals, name)| totals.print(name, motions));
+}
+
+/// The arms of the data that have a flange.
+fn real_arms() -> Vec<ArmModel> {
+    let files = elbowroom_testkit::folder::robots(&["urdf"]);
+    let arms: Vec<ArmModel> = files.iter().filter_map(|file| ArmModel::load(file, None)).collect();
+    println!("{} of {} robots of the data have a flange", arms.len(), files.len());
+    arms
+}
+
+/// Arms that can start together, and a random motion of the bar.
+fn task<'m>(models: &'m [ArmModel], random: &mut SplitMix, count: usize) -> (Vec<&'m ArmModel>, Pair, Vec<Pose>) {
+    loop {
+        let mut arms = vec![&models[random.index(models.len())]];
+        while arms.len() < count {
+            let other = &models[random.index(models.len())];
+            if (other.size / arms[0].size).ln().abs() < 0.25 {
+                arms.push(other);
+            }
         }
-        totals.step_us.sort_by(f64::total_cmp);
-        let step = |share: f64| totals.step_us[((totals.step_us.len() - 1) as f64 * share) as usize];
-        println!(
-            "{name:10} {:.3} {:3} {:7.1} {:4} {} {:.1e}  step µs median {:.0}, p99 {:.0}  ({:.0} s)",
-            totals.share,
-            totals.whole,
-            totals.stopped_s,
-            totals.hand_overs,
-            totals.contacts,
-            totals.deviation_m,
-            step(0.5),
-            step(0.99),
-            begin.elapsed().as_secs_f64()
-        );
+        let (apart_m, wide_m) = if models.len() > 1 { REAL } else { (0.6, 0.4) };
+        let Some(pair) = Pair::of(&arms, apart_m, None).filter(Pair::can_start) else { continue };
+        let way = motion(random, &pair, part_pose(&pair), wide_m, 3);
+        if way.len() > 1 {
+            return (arms, pair, way);
+        }
     }
 }
 
-/// Bound of the distance of any part that an arm moves from the axis of a joint, m.
+/// Bound of the distance of any part that an arm moves from the axis of a joint, for an arm of size 1, m.
 const REACH_M: f64 = 1.3;
 
 /// Middle of the hand in the frame of the link that carries it.
-const HAND_IN_LINK: Vec3 = Vec3::new(0.0, 0.0, 0.5 * HAND_M);
+fn hand_in_link(arm: &ArmModel) -> Vec3 {
+    Vec3::Z * (0.5 * HAND_M * arm.size)
+}
 
 /// What the check in Python must know of the cell.
-fn setup(pair: &Pair) -> String {
-    let urdf = std::fs::canonicalize(elbowroom_testkit::folder::model("rx60b")).unwrap();
-    let arm = |base: Pose| {
+fn setup(pair: &Pair, arms: &[&ArmModel]) -> String {
+    let describe = |(arm, base): (&&ArmModel, Pose)| {
+        let (wide, long) = (HAND_WIDE_M * arm.size, 0.5 * HAND_M * arm.size);
         format!(
-            "{{\"urdf\": {:?}, \"base\": {{\"rotation\": {:?}, \"at\": {:?}}}, \"tool\": {{\"link\": \"tool0\", \"half_extents\": [{HAND_WIDE_M}, {HAND_WIDE_M}, {}], \"at\": {:?}}}}}",
-            urdf.display().to_string(),
+            "{{\"urdf\": {:?}, \"base\": {{\"rotation\": {:?}, \"at\": {:?}}}, \"tool\": {{\"link\": \"tool0\", \"half_extents\": [{wide}, {wide}, {long}], \"at\": {:?}}}}}",
+            std::fs::canonicalize(&arm.file).unwrap().display().to_string(),
             base.rotation.rows(),
             base.translation.to_array(),
-            0.5 * HAND_M,
-            HAND_IN_LINK.to_array()
+            hand_in_link(arm).to_array()
         )
     };
-    let arms: Vec<String> = pair.scene.robots().iter().map(|robot| arm(robot.base_in_world)).collect();
+    let bases = pair.scene.robots().iter().map(|robot| robot.base_in_world);
+    let described: Vec<String> = arms.iter().zip(bases).map(describe).collect();
+    let largest = arms.iter().map(|arm| arm.size).fold(0.0, f64::max);
+    let (thin, long) = (THIN_M * pair.size, BAR_M * pair.size);
     format!(
-        "{{\"reach_m\": {REACH_M}, \"bar_half_extents\": [{THIN_M}, {THIN_M}, {BAR_M}], \"arms\": [{}]}}\n",
-        arms.join(", ")
+        "{{\"reach_m\": {}, \"bar_half_extents\": [{thin}, {thin}, {long}], \"arms\": [{}]}}\n",
+        REACH_M * largest,
+        described.join(", ")
     )
 }
 
@@ -115,7 +174,8 @@ fn recorded(pair: &Pair, settings: CooperationSettings, way: &[Pose], file: &Pat
         let held = robot.attachment().unwrap();
         let member = |id| pair.members.iter().position(|m| m.robot == id).unwrap();
         let visitor = held.visiting_links.first().map_or("-1".to_owned(), |(id, _)| member(*id).to_string());
-        let bar = Pose::from_translation(HAND_IN_LINK).inverse_mul(&held.in_link);
+        let middle = 0.5 * pair.members[member(held.robot)].tool_in_tip.translation;
+        let bar = Pose::from_translation(middle).inverse_mul(&held.in_link);
         let numbers = bar.translation.to_array().into_iter().chain(bar.rotation.to_quaternion_xyzw());
         let joints = (0..pair.members.len()).flat_map(|m| robot.q(m).iter().copied());
         _ = write!(text, "{t_s},{},{visitor}", member(held.robot));

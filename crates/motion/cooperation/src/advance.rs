@@ -220,17 +220,8 @@ impl VirtualRobot<'_> {
             *slot = SweepMove::Robot { robot: arm.robot, to: &limb.next };
             count += 1;
         }
-        let options = SweepOptions { tolerance_m: 1e-5, ..SweepOptions::default() };
-        let moves = &moves[..count];
-        for moving in moves {
-            // What rests in contact elsewhere is none of its business.
-            let SweepMove::Robot { robot, .. } = moving else { continue };
-            let mut pairs = self.checker.between(Selection::Robot(*robot), Selection::All);
-            if let Some(hit) = pairs.sweep(&self.state, moves, &options).map_err(|_| Hold::Unproven)? {
-                return Ok(Some(hit));
-            }
-        }
-        Ok(None)
+        let options = SweepOptions { tolerance_m: 1e-5, moving_only: true, ..SweepOptions::default() };
+        self.checker.sweep(&self.state, &moves[..count], &options).map_err(|_| Hold::Unproven)
     }
 
     /// The free arm that moves this geometry in this step.

@@ -3,23 +3,23 @@
 use elbowroom_avoidance::LeastSquares;
 use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
 use elbowroom_robot::{GeometryId, RobotId};
-use elbowroom_scene::{Checker, PairDistance, Scene, SceneState, Selection};
+use elbowroom_scene::{ApproachingPair, Checker, LevelOfDetail, Scene, SceneMotion, SceneState, Selection};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::CooperationSettings;
 
 /// Most pairs that an arm keeps away from at the same time.
 const ROWS: usize = 16;
-/// Distance beyond the boundary distance at which a pair is still looked at, m.
-const NOTICE_M: f64 = 0.02;
-/// Largest boundary distance that is looked at, m.
-const MOST_NOTICE_M: f64 = 0.12;
+/// Distance beyond the gap from which a pair is always looked at, m.
+const NOTICE_M: f64 = 0.005;
+/// Time until contact within which a pair is measured exactly, s.
+const EXACT_S: f64 = 0.05;
+/// Largest speed at which two parts are expected to approach each other, m/s.
+const FASTEST_M_S: f64 = 2.0;
 /// Distance between its own links from which an arm keeps them apart, m.
-const SELF_NOTICE_M: f64 = 0.02;
+const SELF_NOTICE_M: f64 = 0.005;
 /// Distance between its own links that an arm keeps, m.
 const SELF_GAP_M: f64 = 0.002;
-/// Distance of a point of an arm from the axis of a joint that the boundary distance counts on, m.
-const REACH_M: f64 = 1.0;
 /// Weight of the repulsion against the attraction.
 const REPULSION: f64 = 1e4;
 /// Share of the deceleration that the boundary distance counts on.
@@ -59,7 +59,7 @@ pub(crate) struct FreeArm {
     limits: Vec<JointLimits>,
     problem: LeastSquares,
     /// Pairs that are near, and the gap that the arm keeps, m.
-    pairs: Vec<(PairDistance, f64)>,
+    pairs: Vec<(ApproachingPair, f64)>,
     columns: Vec<[f64; 6]>,
     other_columns: Vec<[f64; 6]>,
     /// Joint velocities of the result, rad/s or m/s.
@@ -90,14 +90,14 @@ impl FreeArm {
     pub fn react(
         &mut self,
         (scene, state, checker): (&Scene, &SceneState, &mut Checker<'_>),
-        (arms, own): (&[ArmMotion], usize),
+        (arms, motion, own): (&[ArmMotion], &SceneMotion, usize),
         attraction: Attraction<'_>,
         settings: &CooperationSettings,
         dt_s: f64,
     ) {
         self.attract(&arms[own].state, attraction, dt_s);
-        let boundary_m = self.boundary_m(arms, own, dt_s);
-        self.notice((scene, state, checker), arms[own].robot, (boundary_m, settings.gap_m));
+        let notice_s = self.notice_s(&arms[own].state, dt_s);
+        self.notice((scene, state, checker), motion, arms[own].robot, (notice_s, settings.gap_m));
         self.problem.clear();
         let pairs = std::mem::take(&mut self.pairs);
         for (pair, gap_m) in &pairs {
@@ -132,33 +132,29 @@ impl FreeArm {
         }
     }
 
-    /// An upper bound on the boundary distance of any pair, m.
+    /// Time until contact from which a pair is of no interest, s: beyond it, the distance exceeds the boundary distance.
     ///
     /// Along any direction, the ratio of what the joints move and what they can decelerate is at most the longest time T in
     /// which one of them stops, so `v²/(2·a) ≤ v·T/2`.
-    fn boundary_m(&self, arms: &[ArmMotion], own: usize, dt_s: f64) -> f64 {
-        let (mut speed_m_s, mut stop_s) = (0.0, 0.0_f64);
-        for (qd, l) in arms[own].state.qd.iter().zip(&self.limits) {
+    fn notice_s(&self, own: &ChainState, dt_s: f64) -> f64 {
+        let stop_s = own.qd.iter().zip(&self.limits).map(|(qd, l)| {
             let fastest = (qd.abs() + l.acceleration * dt_s).min(l.velocity);
-            speed_m_s += fastest * REACH_M;
-            stop_s = stop_s.max(fastest / (l.acceleration * DECELERATION_SHARE));
-        }
-        let others = arms.iter().enumerate().filter(|(index, _)| *index != own);
-        let other_m_s = others.map(|(_, arm)| arm.state.qd.iter().map(|v| v.abs() * REACH_M).sum()).fold(0.0, f64::max);
-        let speed_m_s: f64 = speed_m_s + other_m_s;
-        (NOTICE_M + 0.5 * speed_m_s * stop_s).min(MOST_NOTICE_M)
+            fastest / (l.acceleration * DECELERATION_SHARE)
+        });
+        dt_s + 0.5 * stop_s.fold(0.0, f64::max)
     }
 
     /// The nearest pairs between the arm and everything, with the gap of each, m.
     fn notice(
         &mut self,
         (scene, state, checker): (&Scene, &SceneState, &mut Checker<'_>),
+        motion: &SceneMotion,
         own: RobotId,
-        (boundary_m, gap_m): (f64, f64),
+        (notice_s, gap_m): (f64, f64),
     ) {
         let pairs = &mut self.pairs;
         pairs.clear();
-        let mut add = |pair: PairDistance, gap_m: f64| {
+        let mut add = |pair: ApproachingPair, gap_m: f64| {
             if pairs.len() < ROWS {
                 pairs.push((pair, gap_m));
             } else if let Some(farthest) = pairs.iter_mut().max_by(|a, b| a.0.metres.total_cmp(&b.0.metres))
@@ -167,14 +163,28 @@ impl FreeArm {
                 *farthest = (pair, gap_m);
             }
         };
+        // What is farther away counts only if it may meet soon, and with the distance of boxes unless that is very soon.
+        let policy = |near_m: f64| LevelOfDetail {
+            exact_m: near_m,
+            exact_s: EXACT_S,
+            within_m: near_m + FASTEST_M_S * notice_s,
+            progressive: true,
+        };
+        let counts = |pair: &ApproachingPair, near_m: f64| pair.metres <= near_m || pair.earliest_s < notice_s;
         let arm = Selection::Robot(own);
-        checker.between(arm, arm).distances_within(state, SELF_NOTICE_M, |pair| add(pair, SELF_GAP_M));
+        checker.between(arm, arm).approaching(state, motion, &policy(SELF_NOTICE_M), notice_s, |pair| {
+            if counts(&pair, SELF_NOTICE_M) {
+                add(pair, SELF_GAP_M);
+            }
+        });
+        let near_m = gap_m + NOTICE_M;
         let others = (0..scene.robots().len()).map(RobotId).filter(|other| *other != own).map(Selection::Robot);
         for other in others.chain([Selection::Objects]) {
             let is_carried = |id: GeometryId| matches!(id, GeometryId::Object(o) if state.attachment(o).is_some());
-            checker.between(arm, other).distances_within(state, gap_m + boundary_m, |pair| {
+            checker.between(arm, other).approaching(state, motion, &policy(near_m), notice_s, |pair| {
                 // What a robot carries belongs to the robot.
-                if other != Selection::Objects || !(is_carried(pair.a) || is_carried(pair.b)) {
+                let is_twice = other == Selection::Objects && (is_carried(pair.a) || is_carried(pair.b));
+                if counts(&pair, near_m) && !is_twice {
                     add(pair, gap_m);
                 }
             });
@@ -187,7 +197,7 @@ impl FreeArm {
         scene: &Scene,
         (arms, own): (&[ArmMotion], usize),
         state: &SceneState,
-        (pair, gap_m): (&PairDistance, f64),
+        (pair, gap_m): (&ApproachingPair, f64),
     ) {
         let (arm, chain) = (&arms[own], &scene.robots()[arms[own].robot.0].robot.chain);
         let link_of = |id: GeometryId| match id {

@@ -2,9 +2,6 @@
 
 use crate::holding::Holding;
 
-/// Time without any progress after which a hand that cannot go back any further has left, s.
-const STUCK_S: f64 = 0.2;
-
 /// Phase of a hand-over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HandOverPhase {
@@ -68,12 +65,6 @@ impl HandOver {
             HandOverPhase::Approaching | HandOverPhase::Closing | HandOverPhase::Withdrawing => Some(self.receiver),
             HandOverPhase::Opening | HandOverPhase::Retreating => Some(self.giver),
         }
-    }
-
-    /// Whether the giver's hand has left, with an approach of this length (m): at its pre-grasp, or if it cannot get there, by
-    /// twice the gap.
-    pub fn has_left(&self, length_m: f64, gap_m: f64) -> bool {
-        self.before_m >= length_m || self.stuck_s > STUCK_S && self.before_m >= 2.0 * gap_m
     }
 
     /// Distance of the follower's hand from its grasp `dt_s` seconds later, m.

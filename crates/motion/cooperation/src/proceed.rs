@@ -2,6 +2,7 @@
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_robot::RobotId;
+use elbowroom_scene::Selection;
 
 use crate::hand_over::HandOverPhase;
 use crate::holding::attachment;
@@ -15,6 +16,10 @@ const EXACT: f64 = 1e-9;
 const REACHING_S: f64 = 8.0;
 /// Time without progress after which a receiver that approaches gives up, s.
 const STUCK_S: f64 = 1.0;
+/// Time without progress after which a hand that leaves need not reach its pre-grasp, s.
+const LEAVING_S: f64 = 0.2;
+/// Distance from the work-piece at which it has left then, m.
+const LEFT_M: f64 = 1e-3;
 
 impl VirtualRobot<'_> {
     /// Goes on with the hand-over. Returns it in the step in which the receiver takes the work-piece.
@@ -34,13 +39,17 @@ impl VirtualRobot<'_> {
                 }
             }
             HandOverPhase::Opening if since_s >= self.settings.settle_s => hand_over.enter(HandOverPhase::Retreating),
-            HandOverPhase::Retreating if hand_over.has_left(length_m(hand_over.giver), self.settings.gap_m) => {
+            HandOverPhase::Retreating => {
                 let giver = hand_over.giver;
-                self.hand_over = None;
-                self.allow_visit(None);
-                self.release(giver);
+                if hand_over.before_m >= length_m(giver) || self.leaves_early(giver) {
+                    self.hand_over = None;
+                    self.allow_visit(None);
+                    self.release(giver);
+                }
             }
-            HandOverPhase::Withdrawing if hand_over.has_left(length_m(receiver), self.settings.gap_m) => self.give_up(),
+            HandOverPhase::Withdrawing if hand_over.before_m >= length_m(receiver) || self.leaves_early(receiver) => {
+                self.give_up();
+            }
             _ => {}
         }
         None
@@ -82,6 +91,27 @@ impl VirtualRobot<'_> {
             hand_over.enter(HandOverPhase::Approaching);
             self.allow_visit(Some(member));
         }
+    }
+
+    /// Whether a hand that cannot go back any further to its pre-grasp has left the work-piece; then its arm is free to find
+    /// another way.
+    fn leaves_early(&mut self, k: usize) -> bool {
+        let member = self.holdings[k].member;
+        let Some(hand_over) = self.hand_over.as_mut().filter(|h| h.stuck_s > LEAVING_S && h.before_m > 0.0) else {
+            return false;
+        };
+        hand_over.stuck_s = 0.0;
+        // Only then does its distance count.
+        self.allow_visit(None);
+        let (robot, part) = (self.members[member].robot, Selection::Object(self.work_piece));
+        let has_left = self.members[member].hand.iter().all(|&link| {
+            let hand = Selection::Link { robot, link };
+            self.checker.between(hand, part).within(&self.state, LEFT_M).is_none()
+        });
+        if !has_left {
+            self.allow_visit(Some(member));
+        }
+        has_left
     }
 
     /// The receiver takes the work-piece.

@@ -2,7 +2,7 @@
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
-use elbowroom_scene::{Attachment, Checker, CheckerOptions, Scene, SceneError, SceneState, Selection};
+use elbowroom_scene::{Attachment, Checker, CheckerOptions, Scene, SceneError, SceneMotion, SceneState, Selection};
 use elbowroom_spatial::Pose;
 
 use crate::carried::Carried;
@@ -47,6 +47,8 @@ pub struct VirtualRobot<'s> {
     pub(crate) state: SceneState,
     /// The state with the holder where it will be.
     pub(crate) state_ahead: SceneState,
+    /// How fast the arms move.
+    motion: SceneMotion,
     pub(crate) work_piece: ObjectId,
     pub(crate) members: Vec<Member>,
     pub(crate) settings: CooperationSettings,
@@ -111,6 +113,7 @@ impl<'s> VirtualRobot<'s> {
             state_ahead: state.clone(),
             decision: DecisionMemory::new(holdings.len()),
             state,
+            motion: SceneMotion::new(scene),
             work_piece,
             members,
             settings,
@@ -270,6 +273,10 @@ impl<'s> VirtualRobot<'s> {
 
     /// Moves the arms that do not hold the work-piece towards where they wait.
     pub(crate) fn react(&mut self, dt_s: f64, overrides: &[f64]) {
+        for arm in &self.arms {
+            // As many values as the robot has joints, and finite.
+            let _ = self.motion.set_qd(self.scene, &self.state, arm.robot, &arm.state.qd);
+        }
         for member in 0..self.members.len() {
             if self.carries(member) {
                 self.limbs[member].free.is_yielding = false;
@@ -283,7 +290,7 @@ impl<'s> VirtualRobot<'s> {
                 _ => Attraction { q: &limb.home, velocity: None },
             };
             let scene = (self.scene, &self.state, &mut self.checker);
-            limb.free.react(scene, (&self.arms, member), attraction, &self.settings, dt_s);
+            limb.free.react(scene, (&self.arms, &self.motion, member), attraction, &self.settings, dt_s);
             let share = usable(overrides[member]);
             let q = &self.arms[member].state.q;
             for ((next, q), v) in limb.next.iter_mut().zip(q).zip(&limb.free.velocity) {

@@ -1,6 +1,8 @@
 //! The work-piece on its way: carried by one arm, handed over, never off its path.
 
 use elbowroom_cooperation::{CooperationSettings, HandOverPhase, Hold, HoldLimit, VirtualRobot};
+use elbowroom_robot::ObjectId;
+use elbowroom_scene::{Checker, CheckerOptions};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
@@ -120,6 +122,35 @@ fn a_hand_obeys_its_override_and_says_where_it_would_go() {
     }
     let intent = halted.expect("a hand-over");
     assert!(intent.iter().any(|v| v.abs() > 1e-3), "{intent:?}");
+}
+
+#[test]
+fn a_hand_that_is_stopped_on_its_way_back_does_not_hold_up_the_work_piece() {
+    let pair = Pair::new(2, 0.6);
+    let start = part_pose(&pair);
+    let way = straight(start, Pose::new(start.rotation, Vec3::new(0.3, 0.0, 0.45)), 0.05);
+    let mut robot = pair.robot(CooperationSettings::default());
+    let mut k = 0;
+    let mut step = |robot: &mut VirtualRobot<'_>, of_giver: f64| {
+        desire_in_step(robot, &way, k);
+        robot.step(DT_S, &[of_giver, 1.0]);
+        k += 1;
+    };
+    while robot.phase() != Some(HandOverPhase::Retreating) {
+        step(&mut robot, 1.0);
+    }
+    (0..25).for_each(|_| step(&mut robot, 1.0));
+    assert_eq!(robot.phase(), Some(HandOverPhase::Retreating), "10 mm from its grasp");
+    let (stopped, path_s) = (robot.q(0).to_vec(), robot.path_s());
+    (0..100).for_each(|_| step(&mut robot, 0.0));
+    assert!(robot.phase().is_none() && robot.path_s() > path_s + 0.1, "{} s from {path_s}", robot.path_s());
+    assert_eq!(robot.q(0), stopped);
+    (0..200).for_each(|_| step(&mut robot, 0.0));
+    assert!(robot.on_path().0.translation.distance(robot.part_in_world().translation) < 1e-9);
+    let mut state = pair.state();
+    state.attach_at(&pair.scene, ObjectId(0), robot.attachment().unwrap().clone()).unwrap();
+    (0..2).for_each(|m| state.set_q(&pair.scene, pair.members[m].robot, robot.q(m)).unwrap());
+    assert!(Checker::new(&pair.scene, CheckerOptions::default()).collides(&state).is_none());
 }
 
 #[test]

@@ -122,6 +122,14 @@ impl<'s> GuidedArm<'s> {
         change(self.scene, &mut self.state)
     }
 
+    /// Switches what the tool keeps off: see [`SurfaceNavigator::switch`].
+    ///
+    /// # Errors
+    /// [`NavigatorError::TooNear`]; nothing is switched then.
+    pub fn switch(&mut self, is_on: impl Fn(usize) -> bool) -> Result<(), NavigatorError> {
+        self.navigator.switch(is_on)
+    }
+
     /// Keeps the hand within a guide from the next step on; `None` lets it move freely.
     pub fn set_guide(&mut self, guide: Option<Guide>) {
         self.guide = guide;
@@ -313,7 +321,7 @@ impl<'s> GuidedArm<'s> {
             return Err(ArmLimit::JointSpeed(joint));
         }
         let moves = [SweepMove::Robot { robot: *robot, to: next }];
-        let options = SweepOptions { tolerance_m: 1e-5, ..SweepOptions::default() };
+        let options = SweepOptions { tolerance_m: 1e-5, moving_only: true, ..SweepOptions::default() };
         match checker.sweep(state, &moves, &options) {
             Ok(None) => {}
             Ok(Some(hit)) => return Err(ArmLimit::Contact(hit.a, hit.b)),

@@ -13,6 +13,8 @@ use crate::NavigatorError;
 pub struct ProtectedSurface {
     pub(crate) surface: NormalConeHierarchy,
     pub(crate) in_world: Pose,
+    /// Whether the tool keeps off it now.
+    pub(crate) is_on: bool,
 }
 
 impl ProtectedSurface {
@@ -29,7 +31,13 @@ impl ProtectedSurface {
         if !in_world.is_finite() {
             return Err(NavigatorError::PoseNotFinite("a protected surface"));
         }
-        Ok(Self { surface, in_world })
+        Ok(Self { surface, in_world, is_on: true })
+    }
+
+    /// The surface as it is at first: on, or off until [`SurfaceNavigator::switch`](crate::SurfaceNavigator::switch).
+    #[must_use]
+    pub fn switched(self, is_on: bool) -> Self {
+        Self { is_on, ..self }
     }
 }
 

@@ -133,10 +133,32 @@ impl SurfaceNavigator {
         self.tool_in_world != self.before.0
     }
 
+    /// Switches protected surfaces, all at once: `is_on` says of each, by its index, whether the tool keeps off it from now
+    /// on.
+    ///
+    /// # Errors
+    /// [`NavigatorError::TooNear`] if the tool is nearer to one that would be switched on than the least gap. Nothing is
+    /// switched then.
+    pub fn switch(&mut self, is_on: impl Fn(usize) -> bool) -> Result<(), NavigatorError> {
+        let least_gap_m = self.settings.least_gap_m;
+        for index in 0..self.surfaces.len() {
+            if is_on(index) && !self.surfaces[index].is_on {
+                let gap_m = self.distance_from(index, self.tool_in_world, 2.0 * least_gap_m);
+                if gap_m < least_gap_m {
+                    return Err(NavigatorError::TooNear { gap_m, least_gap_m });
+                }
+            }
+        }
+        for (index, surface) in self.surfaces.iter_mut().enumerate() {
+            surface.is_on = is_on(index);
+        }
+        Ok(())
+    }
+
     /// Distance of the tool from a protected surface, by its index. `None` if the distance exceeds `limit_m`, or there is
-    /// no such surface.
+    /// no such surface, or it is off.
     pub fn separation_from(&mut self, surface: usize, limit_m: f64) -> Option<Separation> {
-        let protected = self.surfaces.get(surface)?;
+        let protected = self.surfaces.get(surface).filter(|surface| surface.is_on)?;
         let settings = DistanceSettings { limit: limit_m, ..DistanceSettings::default() };
         mesh_separation_with(
             self.tool.mesh(),
@@ -249,7 +271,7 @@ impl SurfaceNavigator {
         let speed_m_s = settings.speed_m_s.min(self.velocity.length() + largest_change);
         let range_m = settings.influence_m(speed_m_s, dt_s);
         let mut gap_m = range_m;
-        for protected in surfaces {
+        for protected in surfaces.iter().filter(|surface| surface.is_on) {
             let (surface, in_world) = (&protected.surface, &protected.in_world);
             let add = |near: LocalMinimum| {
                 let distance_m = near.separation.distance;
@@ -289,19 +311,27 @@ impl SurfaceNavigator {
     /// A lower bound of the distance between the tool at this pose and the surfaces, at most `limit_m`; 0 inside.
     fn least_distance(&mut self, tool_in_world: Pose, limit_m: f64) -> f64 {
         let mut least = limit_m;
-        for (protected, warm_start) in self.surfaces.iter().zip(&mut self.warm_starts) {
-            let settings = DistanceSettings { limit: least, warm_start: Some(warm_start), ..Default::default() };
-            let found = mesh_separation_with(
-                self.tool.mesh(),
-                &tool_in_world,
-                protected.surface.mesh(),
-                &protected.in_world,
-                settings,
-                &mut self.workspace,
-            );
-            least = found.map_or(least, |s| s.lower_bound.min(least));
+        for index in 0..self.surfaces.len() {
+            if self.surfaces[index].is_on {
+                least = self.distance_from(index, tool_in_world, least);
+            }
         }
         least
+    }
+
+    /// The same of one surface.
+    fn distance_from(&mut self, surface: usize, tool_in_world: Pose, limit_m: f64) -> f64 {
+        let (protected, warm_start) = (&self.surfaces[surface], &mut self.warm_starts[surface]);
+        let settings = DistanceSettings { limit: limit_m, warm_start: Some(warm_start), ..Default::default() };
+        let found = mesh_separation_with(
+            self.tool.mesh(),
+            &tool_in_world,
+            protected.surface.mesh(),
+            &protected.in_world,
+            settings,
+            &mut self.workspace,
+        );
+        found.map_or(limit_m, |s| s.lower_bound.min(limit_m))
     }
 
     /// Turns the tool about its point as far as the slack proves.

@@ -9,6 +9,7 @@ use elbowroom_shared_control::{
     generate_shield,
 };
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_testkit::extent::amount;
 use elbowroom_testkit::random::SplitMix;
 
 use crate::common::{ball, block, point};
@@ -67,7 +68,7 @@ fn shields_protect_everything_but_the_opening() {
         assert!(ProtectedSurface::new(shield.mesh.clone(), Pose::IDENTITY).is_ok());
         let shape = Shape::Mesh(solid.clone());
         let bounds = *shield.mesh.aabb();
-        for k in 0..3000 {
+        for k in 0..amount(3000, 150_000) {
             let p = if k % 2 == 0 {
                 bounds.min + Vec3::from(random.within(0.5)).scale(bounds.extent()) + bounds.extent() * 0.5
             } else {

@@ -6,6 +6,7 @@ use elbowroom_proximity::ccd::{CcdOptions, ConstantTwist, time_of_impact};
 use elbowroom_proximity::{Shape, TriMesh, separation};
 use elbowroom_shared_control::{NavigatorSettings, ProtectedSurface, SurfaceNavigator};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::extent::amount;
 use elbowroom_testkit::random::SplitMix;
 
 use crate::common::{ball, block, point, pose, relief};
@@ -77,13 +78,18 @@ fn no_desired_pose_brings_the_tool_into_a_relief_or_through_a_thin_plate() {
         (block(Vec3::new(1e-4, 0.3, 0.3)), Pose::new(Rotation::from_rpy(0.2, 0.1, 0.3), Vec3::new(0.08, 0.0, 0.1))),
     ];
     let mut random = SplitMix(5);
-    for (tool, steps) in [(ball(0.01, 3), 4000), (block(Vec3::new(0.02, 0.004, 0.03)), 4000), (ball(0.01, 4), 600)] {
-        let surfaces: Vec<_> = [(relief(24), Pose::IDENTITY)].into_iter().chain(plates.clone()).collect();
-        for speed_m_s in [0.25, 20.0] {
-            let settings = NavigatorSettings { speed_m_s, turn_rad_s: 10.0 * speed_m_s, ..Default::default() };
-            let start = Pose::from_translation(Vec3::new(0.0, 0.0, 0.035));
-            let mut bench = Bench::new(&tool, &surfaces, start, settings);
-            wander(&mut bench, &mut random, steps / 2, &settings);
+    // A million steps in a long run, also over the finest relief.
+    for round in 0..amount(1, 117) {
+        for (tool, steps) in [(ball(0.01, 3), 4000), (block(Vec3::new(0.02, 0.004, 0.03)), 4000), (ball(0.01, 4), 600)]
+        {
+            let ground = relief(if round % 8 == 7 { 225 } else { 24 });
+            let surfaces: Vec<_> = [(ground, Pose::IDENTITY)].into_iter().chain(plates.clone()).collect();
+            for speed_m_s in [0.25, 20.0] {
+                let settings = NavigatorSettings { speed_m_s, turn_rad_s: 10.0 * speed_m_s, ..Default::default() };
+                let start = Pose::from_translation(Vec3::new(0.0, 0.0, 0.035));
+                let mut bench = Bench::new(&tool, &surfaces, start, settings);
+                wander(&mut bench, &mut random, steps / 2, &settings);
+            }
         }
     }
 }
@@ -99,6 +105,35 @@ fn a_jump_of_a_metre_does_not_pass_a_plate_of_a_tenth_of_a_millimetre() {
     let end = bench.navigator.tool_in_world().translation;
     // 10 mm of the ball's radius, half of the plate, the gap.
     assert!((end - Vec3::new(0.3, 0.0, 0.01 + 0.5e-4 + settings.gap_m)).length() < 2e-5, "{end:?}");
+}
+
+#[test]
+fn a_surface_that_is_off_is_passed_and_not_switched_on_around_the_tool() {
+    let plate = |z_m: f64| {
+        ProtectedSurface::new(block(Vec3::new(0.2, 0.2, 0.01)), Pose::from_translation(Vec3::Z * z_m)).unwrap()
+    };
+    let settings = NavigatorSettings::default();
+    let surfaces = vec![plate(0.0).switched(false), plate(-0.1)];
+    let start = Pose::from_translation(Vec3::Z * 0.03);
+    let mut navigator = SurfaceNavigator::new(ball(0.005, 2), surfaces, start, settings).unwrap();
+    let go = |navigator: &mut SurfaceNavigator, z_m: f64| {
+        let to = Pose::from_translation(Vec3::Z * z_m);
+        for _ in 0..600 {
+            navigator.step(&to, 1e-3);
+        }
+        navigator.tool_in_world().translation.z
+    };
+    assert!(go(&mut navigator, 0.0).abs() < 1e-5, "inside the plate that is off");
+    assert!(navigator.separation_from(0, 1.0).is_none());
+    let refused = navigator.switch(|index| index == 0);
+    assert!(matches!(refused, Err(elbowroom_shared_control::NavigatorError::TooNear { .. })), "{refused:?}");
+    // Nothing was switched: the other one still protects.
+    let stopped = go(&mut navigator, -0.1);
+    assert!((stopped - (-0.1 + 0.005 + 0.005 + settings.gap_m)).abs() < 2e-5, "{stopped}");
+    navigator.switch(|index| index == 0).unwrap();
+    assert!((go(&mut navigator, -0.1) + 0.1).abs() < 1e-5, "now this one is off");
+    let stopped = go(&mut navigator, 0.1);
+    assert!((stopped + 0.005 + 0.005 + settings.gap_m).abs() < 2e-5, "{stopped}");
 }
 
 #[test]

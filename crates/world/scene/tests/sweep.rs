@@ -147,6 +147,29 @@ fn the_first_of_all_contacts_is_reported() {
     assert!(seen > 10, "{seen}");
 }
 
+#[test]
+fn what_rests_in_contact_is_left_out_if_only_moving_pairs_count() {
+    let scene = scene_of(63, |_| {});
+    let mut r = Random(63);
+    let mut checker = Checker::new(&scene, CheckerOptions::default());
+    let every = SweepOptions::default();
+    let moving = SweepOptions { moving_only: true, ..every };
+    let (mut free_beside_contact, mut hits) = (0, 0);
+    for _ in 0..600 {
+        let start = start(&scene, &mut r);
+        let to: Vec<f64> = start.q(RobotId(0)).iter().map(|q| q + r.between(-0.2, 0.2)).collect();
+        let moves = [SweepMove::Robot { robot: RobotId(0), to: &to }];
+        let hit = checker.sweep(&start, &moves, &moving).unwrap();
+        let own = checker.between(Selection::Robot(RobotId(0)), Selection::All).sweep(&start, &moves, &every).unwrap();
+        if own.is_none_or(|own| !own.at_start()) {
+            assert_eq!(hit.map(|h| (h.time, h.a, h.b)), own.map(|h| (h.time, h.a, h.b)));
+            hits += usize::from(hit.is_some());
+            free_beside_contact += usize::from(hit.is_none() && checker.collides(&start).is_some());
+        }
+    }
+    assert!(free_beside_contact > 10 && hits > 10, "{free_beside_contact} free beside a contact, {hits} hits");
+}
+
 /// The example arm swings about its waist past one object.
 fn past(shape: Shape, in_world: Pose) -> Scene {
     let mut builder = Scene::builder();

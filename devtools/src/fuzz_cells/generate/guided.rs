@@ -43,6 +43,7 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     let mut guidance = GuidanceSpec { rows: hand(tool, &spec.objects, random), ..GuidanceSpec::default() };
     guidance.operator = operator(random);
     tables(&mut guidance, &spec.objects, tool, random);
+    switch_shield(&mut guidance, random);
     let on_the_way = guidance.rows[random.whole(0, guidance.rows.len() - 1)].at.map(|v| v as f64 * 1e-6);
     spec.guidance = Some(guidance);
     if random.percent(40) {
@@ -149,6 +150,7 @@ pub fn hand(tool: Pose, objects: &[ObjectSpec], random: &mut Random) -> Vec<Hand
                 turn: rotation.to_quaternion_xyzw().map(|v| (v * 1e6).round() as i64),
                 enable,
                 clutch,
+                shield: true,
             });
             t_ms += 20;
         }
@@ -181,6 +183,20 @@ fn tables(guidance: &mut GuidanceSpec, objects: &[ObjectSpec], tool: Pose, rando
     }
     if let Some(object) = objects.last().filter(|_| random.percent(25)) {
         guidance.tables.push(force("arm", "r0", &object.name, &LAWS[..3], random));
+    }
+}
+
+/// Lets some streams switch the shield, which forces do not follow.
+fn switch_shield(guidance: &mut GuidanceSpec, random: &mut Random) {
+    let has = |word: &str| guidance.tables.iter().any(|table| table.contains(word));
+    if !has("[fixture.shield]") || has("[force.") || random.percent(40) {
+        return;
+    }
+    guidance.switches = true;
+    let mut is_on = random.percent(50);
+    for row in &mut guidance.rows {
+        is_on ^= random.percent(4);
+        row.shield = is_on;
     }
 }
 

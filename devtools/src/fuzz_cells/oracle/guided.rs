@@ -5,7 +5,7 @@ use elbowroom_cell::shared_control::{ShieldSettings, ShieldTarget};
 use elbowroom_cell::{Cell, CellFixture, CellOperator, ForceResponse, ShieldSource};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_sim::Recording;
+use elbowroom_sim::{EventRow, Recording, RunEvent};
 use elbowroom_spatial::Vec3;
 
 use super::arm::Arm;
@@ -59,14 +59,14 @@ fn distances(
     let robot = operator.robot.0;
     let parts = Guarded::all(&cell.robots[robot]);
     let fixtures = &cell.guidance.fixtures;
-    let shield_of = |object: usize| {
-        fixtures.iter().find(|f| f.active && f.tool == Some(operator.tool) && f.protects == ObjectId(object))
+    let shield_of = |object: usize, t_s: f64| {
+        let is_of = |f: &&CellFixture| f.tool == Some(operator.tool) && f.protects == ObjectId(object);
+        fixtures.iter().find(|f| is_of(f) && is_on(f, recording, t_s))
     };
     let tool_link = cell.robots[robot].flange.0;
     let pairs: Vec<(&Guarded, usize, f64)> = parts
         .iter()
         .flat_map(|part| (0..objects.len()).map(move |object| (part, object)))
-        .filter(|(part, object)| shield_of(*object).is_none() || part.link != tool_link)
         .map(|(part, object)| (part, object, if part.is_tool() { operator.settings.least_gap_m } else { 0.0 }))
         .collect();
     // How much nearer each pair may have come than at its last measurement, m.
@@ -78,6 +78,11 @@ fn distances(
         let before = &samples[k.saturating_sub(1)].q;
         let t_s = sample.t_s;
         for (i, &(part, object, least_m)) in pairs.iter().enumerate() {
+            if part.link == tool_link && shield_of(object, t_s).is_some() {
+                // Nothing is known of what happens meanwhile.
+                slack_m[i] = 0.0;
+                continue;
+            }
             let motion = sample.q.iter().zip(before).zip(&lever_arms[i]);
             slack_m[i] -= motion.map(|((now, before), lever)| (now - before).abs() * lever).sum::<f64>();
             if slack_m[i] > 0.0 {
@@ -93,13 +98,24 @@ fn distances(
             slack_m[i] = distance.lower - least_m;
         }
         for (object, (_, at)) in objects.iter().enumerate() {
-            if let Some(inside_m) = shield_of(object).and_then(|f| inside_shield(cell, f, &frames, at)) {
+            if let Some(inside_m) = shield_of(object, t_s).and_then(|f| inside_shield(cell, f, &frames, at)) {
                 let (distance_m, least_m) = (-inside_m, 0.0);
                 findings.list.push(Finding::TooNear { robot, object, t_s, distance_m, least_m });
                 return;
             }
         }
     }
+}
+
+/// Whether a fixture was on at a time, by the events of the run.
+fn is_on(fixture: &CellFixture, recording: &Recording, t_s: f64) -> bool {
+    let mut switched = recording.events.iter().rev().filter(|e| e.region == fixture.name && e.t_s < t_s);
+    let state = |e: &EventRow| match e.event {
+        RunEvent::On => Some(true),
+        RunEvent::Off => Some(false),
+        _ => None,
+    };
+    switched.find_map(state).unwrap_or(fixture.active)
 }
 
 /// How far a point of the tool's box is inside the shield of a drill in a box, beyond its tolerance; `None` if none is.

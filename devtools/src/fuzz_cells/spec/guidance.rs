@@ -12,6 +12,8 @@ pub struct GuidanceSpec {
     /// Keys of a virtual robot, which has the stream instead of an operator; empty for an operator.
     pub virtual_robot: String,
     pub rows: Vec<HandRow>,
+    /// Whether the stream switches the fixture `shield`.
+    pub switches: bool,
     /// Tables `[fixture.NAME]` and `[force.NAME]`.
     pub tables: Vec<String>,
 }
@@ -27,6 +29,8 @@ pub struct HandRow {
     pub turn: [i64; 4],
     pub enable: bool,
     pub clutch: bool,
+    /// Whether the fixture `shield` is on, if the stream switches it.
+    pub shield: bool,
 }
 
 impl GuidanceSpec {
@@ -45,17 +49,23 @@ impl GuidanceSpec {
     /// Name of the stream's file, made from its contents, so that cells do not share it.
     pub fn file_name(&self) -> String {
         let mut hasher = DefaultHasher::new();
-        self.rows.hash(&mut hasher);
+        (&self.rows, self.switches).hash(&mut hasher);
         format!("hand-{:016x}.csv", hasher.finish())
     }
 
     pub(super) fn write_file(&self, folder: &Path) -> std::io::Result<()> {
-        let mut text = String::from("t_s,x,y,z,qx,qy,qz,qw,enable,clutch\n");
+        let fixture = if self.switches { ",fixture.shield" } else { "" };
+        let mut text = format!("t_s,x,y,z,qx,qy,qz,qw,enable,clutch{fixture}\n");
         for row in &self.rows {
             let [x, y, z] = row.at.map(|v| v as f64 * 1e-6);
             let [a, b, c, d] = row.turn.map(|v| v as f64 * 1e-6);
             let (enable, clutch) = (u8::from(row.enable), u8::from(row.clutch));
-            let _ = writeln!(text, "{},{x},{y},{z},{a},{b},{c},{d},{enable},{clutch}", f64::from(row.t_ms) * 1e-3);
+            let _ = write!(text, "{},{x},{y},{z},{a},{b},{c},{d},{enable},{clutch}", f64::from(row.t_ms) * 1e-3);
+            text += match (self.switches, row.shield) {
+                (false, _) => "\n",
+                (true, true) => ",1\n",
+                (true, false) => ",0\n",
+            };
         }
         std::fs::write(folder.join(self.file_name()), text)
     }

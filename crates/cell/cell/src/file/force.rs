@@ -69,6 +69,11 @@ fn force(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellForce> {
         return Err(between.error(format!("has {} names instead of two", sides.len())).hint(BETWEEN));
     };
     let (operator, whole_arm) = guided(own, cell)?;
+    if !operator.switches.is_empty() {
+        let what =
+            format!("the stream of operator \"{}\" switches fixtures, which forces do not follow", operator.name);
+        return Err(own.error(what).hint("a stream without the columns `fixture.NAME`, or no forces for this tool"));
+    }
     let other = other_side(other, cell, operator.tool, whole_arm)?;
     let response = match law {
         Law::Admittance => ForceResponse::Admittance(body(t, cell)?),

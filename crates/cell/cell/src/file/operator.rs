@@ -11,7 +11,7 @@ use super::poses::read_with;
 use super::schema::{OPERATOR, names};
 use super::tools::with_exchanged_tools;
 use crate::operator::{CellOperator, OperatorRow, OperatorStream};
-use crate::{Cell, FixtureTool, Units};
+use crate::{Cell, FixtureRef, FixtureSwitches, FixtureTool, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -56,12 +56,23 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
         let is_usable = (SCALES.0..=SCALES.1).contains(&scale);
         if is_usable { Ok(scale) } else { Err(v.error(format!("is {scale}")).hint("scale = 1   (0.001 to 100)")) }
     })?;
+    let tool = tool(t, cell, robot)?;
+    let fixtures = fixtures_of(cell, tool);
+    let columns: Vec<String> = fixtures.iter().map(|(_, name)| format!("fixture.{name}")).collect();
+    let (stream, states) = stream(t, units, (scale, stale_s), &columns)?;
+    let mut switches = FixtureSwitches::default();
+    for ((fixture, _), states) in fixtures.into_iter().zip(states) {
+        if let Some(states) = states {
+            switches.add(fixture, states);
+        }
+    }
     Ok(CellOperator {
         name: name.to_owned(),
         line: t.line,
         robot,
-        tool: tool(t, cell, robot)?,
-        stream: stream(t, units, scale, stale_s)?,
+        tool,
+        stream,
+        switches,
         settings: NavigatorSettings {
             gap_m,
             least_gap_m: 0.5 * gap_m,
@@ -83,9 +94,33 @@ pub(super) fn stale_s(t: &Table<'_>, default_ms: f64) -> Result<f64> {
     Ok(1e-3 * stale_ms)
 }
 
-/// The stream that a table names.
-pub(super) fn stream(t: &Table<'_>, units: Units, scale: f64, stale_s: f64) -> Result<OperatorStream> {
-    let (table, rows) = read_with(&t.need("stream", STREAM)?, units, &["enable", "clutch"])?;
+/// The fixtures of a tool, with their names.
+fn fixtures_of(cell: &Cell, tool: FixtureTool) -> Vec<(FixtureRef, &str)> {
+    let (fixtures, guides) = (&cell.guidance.fixtures, &cell.guidance.guides);
+    let shields = fixtures.iter().enumerate().filter(|(_, f)| f.tool == Some(tool));
+    let guides = guides.iter().enumerate().filter(|(_, g)| g.tool == tool);
+    let shields = shields.map(|(index, f)| (FixtureRef::Shield(index), f.name.as_str()));
+    shields.chain(guides.map(|(index, g)| (FixtureRef::Guide(index), g.name.as_str()))).collect()
+}
+
+/// States from times (s) on.
+type States = Vec<(f64, bool)>;
+
+/// The stream that a table names, and the states in other columns; `None` for one that the file does not have.
+pub(super) fn stream(
+    t: &Table<'_>,
+    units: Units,
+    (scale, stale_s): (f64, f64),
+    columns: &[String],
+) -> Result<(OperatorStream, Vec<Option<States>>)> {
+    let others: Vec<&str> = ["enable", "clutch"].into_iter().chain(columns.iter().map(String::as_str)).collect();
+    let (table, rows) = read_with(&t.need("stream", STREAM)?, units, &others)?;
+    let states = (2..others.len()).map(|column| {
+        let state = |row: &super::poses::PoseRow| Some((row.t_s, row.others[column]? != 0.0));
+        let states: States = rows.iter().filter_map(state).collect();
+        (!states.is_empty()).then_some(states)
+    });
+    let states = states.collect();
     let row = |r: super::poses::PoseRow| OperatorRow {
         t_s: r.t_s,
         pose: r.pose,
@@ -93,7 +128,7 @@ pub(super) fn stream(t: &Table<'_>, units: Units, scale: f64, stale_s: f64) -> R
         clutch: r.others[1].is_some_and(|x| x != 0.0),
     };
     let rows: Vec<OperatorRow> = rows.into_iter().map(row).collect();
-    Ok(OperatorStream::new(table.file.clone(), &rows, scale, stale_s))
+    Ok((OperatorStream::new(table.file.clone(), &rows, scale, stale_s), states))
 }
 
 /// A robot moves by its program, or by an operator.

@@ -59,7 +59,7 @@ fn virtual_robot(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellVirtualRo
         work_piece,
         members: members.collect::<Result<_>>()?,
         holder,
-        stream: stream(t, cell.units, 1.0, stale_s(t, 500.0)?)?,
+        stream: stream(t, cell.units, (1.0, stale_s(t, 500.0)?), &[])?.0,
         settings: settings(t, cell.units)?,
     })
 }

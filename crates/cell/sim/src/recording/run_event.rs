@@ -12,7 +12,7 @@ pub struct EventRow {
     pub t_s: f64,
     /// The robot concerned.
     pub robot: String,
-    /// The region concerned, the object gripped or released, or the perceived obstacle; empty otherwise.
+    /// The region concerned, the fixture, the object gripped or released, or the perceived obstacle; empty otherwise.
     pub region: String,
     /// The event.
     pub event: RunEvent,
@@ -23,9 +23,9 @@ pub struct EventRow {
 pub enum RunEvent {
     /// An event of a robot's monitor.
     Monitor(EventKind),
-    /// A program switched a region on.
+    /// A program switched a region on, or an operator a fixture.
     On,
-    /// A program switched a region off.
+    /// A program switched a region off, or an operator a fixture.
     Off,
     /// The monitor stopped a robot.
     Stop,
@@ -45,7 +45,8 @@ pub enum RunEvent {
     Tool,
     /// The avoidance of a robot changed to this state.
     Avoidance(AvoiderState),
-    /// The tool of a guided robot changed to this state.
+    /// The tool of a guided robot changed to this state. With the name of a fixture, it was not switched: the tool is too
+    /// near.
     Guided(GuidanceState),
     /// A robot took over the work-piece of its virtual robot, which is named in place of the region.
     HandOver,

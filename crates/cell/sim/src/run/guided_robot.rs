@@ -1,7 +1,7 @@
 //! A robot with an operator in a run.
 
-use elbowroom_cell::shared_control::{ArmLimit, GuidedArm, Limit};
-use elbowroom_cell::{Cell, CellOperator, OperatorInput};
+use elbowroom_cell::shared_control::{ArmLimit, Limit};
+use elbowroom_cell::{Cell, CellOperator, FixtureChange, OperatedArm, OperatorInput};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::RobotId;
@@ -16,7 +16,7 @@ const GLIDING_M_S: f64 = 2e-3;
 #[derive(Debug)]
 pub(super) struct GuidedRobot<'s> {
     operator: &'s CellOperator,
-    arm: GuidedArm<'s>,
+    operated: OperatedArm<'s>,
     /// Joint velocities of the last tick, rad/s or m/s.
     velocity: Vec<f64>,
     /// Joint velocities at override 1.
@@ -36,11 +36,11 @@ impl<'s> GuidedRobot<'s> {
         notes: &mut Vec<Diagnostic>,
     ) -> Result<Option<Self>, Diagnostic> {
         let Some(operator) = cell.guidance.operator_of(robot) else { return Ok(None) };
-        let arm = operator.arm(cell, scene, notes)?;
-        let rest = vec![0.0; arm.q().len()];
+        let operated = operator.arm(cell, scene, notes)?;
+        let rest = vec![0.0; operated.arm.q().len()];
         let track = GuidanceTrack { operator: operator.name.clone(), samples: Vec::new() };
         let (velocity, intent, state) = (rest.clone(), rest.clone(), GuidanceState::Free);
-        Ok(Some(Self { operator, arm, velocity, intent, rest, state, is_over: false, track }))
+        Ok(Some(Self { operator, operated, velocity, intent, rest, state, is_over: false, track }))
     }
 
     /// True when the stream is over and the robot has come to rest.
@@ -50,7 +50,7 @@ impl<'s> GuidedRobot<'s> {
 
     /// Writes the robot's joint values and velocities.
     pub fn write_state(&self, state: &mut ChainState) {
-        state.q.copy_from_slice(self.arm.q());
+        state.q.copy_from_slice(self.operated.arm.q());
         state.qd.copy_from_slice(&self.velocity);
         state.qdd.copy_from_slice(&self.rest);
     }
@@ -65,30 +65,32 @@ impl<'s> GuidedRobot<'s> {
         self.track
     }
 
-    /// Moves the arm from `t_s` to the next tick under the override of the monitor. Returns an event if its state
-    /// changed.
+    /// Moves the arm from `t_s` to the next tick under the override of the monitor. Reports events, each with the fixture
+    /// that it concerns, if any.
     pub fn advance(
         &mut self,
         cell: &Cell,
         states: &[ChainState],
         t_s: f64,
         allowed: f64,
-    ) -> Result<Option<RunEvent>, Diagnostic> {
+        mut event: impl FnMut(&str, RunEvent),
+    ) -> Result<(), Diagnostic> {
         let tick_s = cell.timing.tick_s;
-        self.arm
-            .surroundings(|scene, state| place(cell, scene, state, states, &[self.operator.robot], t_s))
+        self.operated.switch(cell, self.operator, t_s, |name, change| event(name, of_fixture(change)));
+        let arm = &mut self.operated.arm;
+        arm.surroundings(|scene, state| place(cell, scene, state, states, &[self.operator.robot], t_s))
             .map_err(|e| Diagnostic::new(&cell.file, self.operator.line, e))?;
-        let before = self.arm.tool_in_world();
-        self.velocity.copy_from_slice(self.arm.q());
+        let before = arm.tool_in_world();
+        self.velocity.copy_from_slice(arm.q());
         let input = self.operator.stream.at(t_s);
         let wanted = if let OperatorInput::Pose(pose) = input { Some(pose) } else { None };
-        let step = self.arm.step(wanted.as_ref(), tick_s, allowed);
-        for (velocity, q) in self.velocity.iter_mut().zip(self.arm.q()) {
+        let step = arm.step(wanted.as_ref(), tick_s, allowed);
+        for (velocity, q) in self.velocity.iter_mut().zip(arm.q()) {
             *velocity = (q - *velocity) / tick_s;
         }
         // What the hand wants, also while the override lets nothing move: it may lead away from a region.
-        self.arm.intent(wanted.as_ref(), tick_s, &mut self.intent);
-        let tool_in_world = self.arm.tool_in_world();
+        arm.intent(wanted.as_ref(), tick_s, &mut self.intent);
+        let tool_in_world = arm.tool_in_world();
         let is_at_rest = self.velocity.iter().all(|v| *v == 0.0);
         self.is_over = input == OperatorInput::Over && is_at_rest;
         let sample = GuidanceSample {
@@ -100,14 +102,23 @@ impl<'s> GuidedRobot<'s> {
             gap_m: step.tool.gap_m,
             active: step.tool.active_rows,
             limit: step.limit,
-            force: self.arm.forces().map(|f| ForceSample { on_hand_n: f.force_on_hand(), energy_j: f.energy_j() }),
+            force: arm.forces().map(|f| ForceSample { on_hand_n: f.force_on_hand(), energy_j: f.energy_j() }),
         };
         self.track.samples.push(sample);
         let is_held = allowed <= 0.0 || matches!(input, OperatorInput::Disabled | OperatorInput::Stale);
         let now = next_state(self.state, &sample, is_held);
-        let changed = now != self.state;
-        self.state = now;
-        Ok(changed.then_some(RunEvent::Guided(now)))
+        if std::mem::replace(&mut self.state, now) != now {
+            event("", RunEvent::Guided(now));
+        }
+        Ok(())
+    }
+}
+
+fn of_fixture(change: FixtureChange) -> RunEvent {
+    match change {
+        FixtureChange::On => RunEvent::On,
+        FixtureChange::Off => RunEvent::Off,
+        FixtureChange::Refused => RunEvent::Guided(GuidanceState::Refused),
     }
 }
 

@@ -29,7 +29,7 @@ mod virtual_robot;
 mod zone_claims;
 
 use elbowroom_cell::configure;
-use elbowroom_cell::{Cell, CellRobot, Frames, OutOfReachProofs, QueryModel};
+use elbowroom_cell::{Cell, CellRobot, Frames};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::{Robot, RobotId};
@@ -38,6 +38,7 @@ use elbowroom_scene::Scene;
 use crate::motion::{PlannedPaths, ProgramClock, ProgramPlan, plan};
 use crate::recording::{Recording, RegionTrack};
 use crate::replanning::{PathGuard, PathReplanner, PerceivedObstacles, SearchTiming};
+use crate::starts::scene;
 use avoiding_robot::AvoidingRobot;
 pub use avoiding_robot::evasion_limits;
 use contact_recorder::ContactRecorder;
@@ -175,13 +176,6 @@ fn own_motions<'a>(
         }
     }
     Ok(virtual_robots)
-}
-
-/// The scene of a run, in which guided tools may enter the openings of their shields.
-fn scene(cell: &Cell) -> Result<Scene, Diagnostic> {
-    let mut model = QueryModel::of_cell(cell);
-    model.add_rules(cell.opened_pairs());
-    model.scene(OutOfReachProofs::Omit)
 }
 
 /// True if the robot keeps to its program, so that its claims are known.

@@ -194,9 +194,7 @@ impl Simulation<'_> {
                 // All members of a virtual robot move together.
                 OwnMotion::Cooperating(_) => continue,
                 OwnMotion::Guided(guided) => {
-                    if let Some(event) = guided.advance(cell, states, t_s, *applied)? {
-                        journal.event(t_s, *id, "", event);
-                    }
+                    guided.advance(cell, states, t_s, *applied, |name, event| journal.event(t_s, *id, name, event))?;
                     continue;
                 }
             };

@@ -112,29 +112,30 @@ def check(cell, rows):
     return found
 
 
-def read(file, count):
+def read(file, joints):
     table = np.loadtxt(file, delimiter=",", skiprows=1, ndmin=2)
     rows = []
     for line in table:
         bar = pin.XYZQUATToSE3(line[3:10])
-        dof = (len(line) - 10) // count
+        ends = 10 + np.cumsum([0] + joints)
         rows.append({"t_s": line[0], "holder": int(line[1]), "visitor": int(line[2]), "bar_in_hand": bar,
-                     "q": [line[10 + dof * k:10 + dof * (k + 1)] for k in range(count)]})
+                     "q": [line[first:last] for first, last in zip(ends, ends[1:])]})
     return rows
 
 
 def main():
     folder = Path(sys.argv[1])
-    cell = Cell(json.loads((folder / "cell.json").read_text()))
-    contacts, steps = 0, 0
+    contacts, steps, queries, least_m = 0, 0, 0, np.inf
     for file in sorted(folder.glob("motion_*.csv")):
-        rows = read(file, len(cell.arms))
+        cell = Cell(json.loads((folder / file.name.replace("motion_", "cell_")).with_suffix(".json").read_text()))
+        rows = read(file, [arm.model.nq for arm in cell.arms])
         found = check(cell, rows)
+        queries, least_m = queries + cell.queries, min(least_m, cell.least_m)
         steps += len(rows)
         contacts += len(found)
         for t_s, pair, distance_m in found[:3]:
             print(f"{file.name}: {t_s:.3f} s: {pair[0]} and {pair[1]}, {distance_m * 1e3:.3f} mm")
-    print(f"{steps} rows, {cell.queries} distances, {contacts} contacts; wherever it was looked at, two robots were at least {cell.least_m * 1e3:.2f} mm apart")
+    print(f"{steps} rows, {queries} distances, {contacts} contacts; wherever it was looked at, two robots were at least {least_m * 1e3:.2f} mm apart")
     sys.exit(contacts > 0)
 
 

@@ -1,13 +1,16 @@
 //! Two arms that face each other with a bar between them, and random motions of the bar.
 #![allow(dead_code, reason = "every program uses a part of it")]
 
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+
 use elbowroom_cooperation::{CooperationSettings, CooperationStep, Grasp, HandedOver, Hold, Member, VirtualRobot};
 use elbowroom_formats::{LoadOptions, robot};
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
-use elbowroom_kinematics::{JointLimits, LinkId};
+use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
 use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot};
-use elbowroom_scene::{Checker, CheckerOptions, Object, Scene, SceneState};
+use elbowroom_scene::{Attachment, Checker, CheckerOptions, Object, Scene, SceneState, Selection};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
@@ -22,27 +25,82 @@ pub const BAR_M: f64 = 0.15;
 /// Half of its thickness, m.
 pub const THIN_M: f64 = 0.02;
 
+/// Largest speed of a random motion, m/s: that of the settings.
+const MOTION_M_S: f64 = 0.25;
+/// Distance of the flange of the RX60B from its base at most, m: the size 1.
+const RX60B_REACH_M: f64 = 1.0;
+
 /// An arm with a hand; its tool centre point is at the tip.
-fn arm() -> (Robot, LinkId) {
-    let file = elbowroom_testkit::folder::model("rx60b");
-    let mut robot = robot::load(&file, &LoadOptions::default()).unwrap().robot;
-    let flange = robot.chain.link("tool0").unwrap();
-    robot.colliders[flange.0].push(Collider {
-        name: "hand".into(),
-        shape: Shape::Cuboid(Cuboid { half_extents: Vec3::new(HAND_WIDE_M, HAND_WIDE_M, 0.5 * HAND_M) }),
-        in_link: Pose::from_translation(Vec3::Z * (0.5 * HAND_M)),
+pub struct ArmModel {
+    pub file: PathBuf,
+    pub robot: Robot,
+    pub tip: LinkId,
+    /// Its reach beside that of the RX60B; all lengths of its cell are so many times as large.
+    pub size: f64,
+}
+
+impl ArmModel {
+    pub fn rx60b() -> Self {
+        Self::load(&elbowroom_testkit::folder::model("rx60b"), Some(1.0)).unwrap()
+    }
+
+    /// An arm whose flange is called `tool0`, with at least six joints; its size is measured if it is not given.
+    pub fn load(file: &Path, size: Option<f64>) -> Option<Self> {
+        let mut robot = robot::load(file, &LoadOptions::default()).ok()?.robot;
+        let tip = robot.chain.link("tool0")?;
+        if robot.chain.dof() < 6 || robot.chain.path(tip).len() < 6 {
+            return None;
+        }
+        let size = size.unwrap_or_else(|| reach_m(&robot, tip) / RX60B_REACH_M);
+        let half = Vec3::new(HAND_WIDE_M, HAND_WIDE_M, 0.5 * HAND_M) * size;
+        robot.colliders[tip.0].push(Collider {
+            name: "hand".into(),
+            shape: Shape::Cuboid(Cuboid { half_extents: half }),
+            in_link: Pose::from_translation(Vec3::Z * half.z),
+        });
+        Some(Self { file: file.to_owned(), robot, tip, size })
+    }
+
+    fn tool_in_tip(&self) -> Pose {
+        Pose::from_translation(Vec3::Z * (HAND_M * self.size))
+    }
+
+    /// Joint values with the tool raised above the base.
+    fn raised(&self) -> Option<Vec<f64>> {
+        let at = Vec3::new(0.3, 0.0, 0.7) * self.size;
+        self.holding(&Pose::new(Rotation::from_z(Vec3::X), at))
+    }
+
+    /// Joint values at which the tool is at a pose in the frame of the base.
+    fn holding(&self, tool_in_root: &Pose) -> Option<Vec<f64>> {
+        let mut solver = IkSolver::new(&self.robot.chain, self.tip, self.tool_in_tip(), IkOptions::default());
+        let seed: Vec<f64> = [0.0, 0.5, 1.5, 0.0, 0.3, 0.0, 0.0].into_iter().take(self.robot.chain.dof()).collect();
+        solver.solve(tool_in_root, &seed).map(|solution| solution.q).ok()
+    }
+}
+
+/// Largest distance of the flange from the base in random configurations, m.
+fn reach_m(robot: &Robot, tip: LinkId) -> f64 {
+    let (mut random, mut state) = (SplitMix(3), ChainState::new(&robot.chain));
+    let limits = JointLimits::of_chain(&robot.chain, 0.3, 0.3, 2.0);
+    let far = (0..2000).map(|_| {
+        for (q, l) in state.q.iter_mut().zip(&limits) {
+            *q = random.between(l.lower.max(-PI), l.upper.min(PI));
+        }
+        robot.chain.forward(&mut state);
+        state.link_in_root(tip).translation.length()
     });
-    (robot, flange)
+    far.fold(0.0, f64::max)
 }
 
 /// Grasps at both ends of the bar and at its four sides.
-fn grasps() -> Vec<Grasp> {
+fn grasps(size: f64) -> Vec<Grasp> {
     let grasp = |outward: Vec3, distance_m: f64| {
         let rotation = Rotation::from_z(-outward);
-        Grasp { tool_in_part: Pose::new(rotation, outward * distance_m), approach: outward * -0.06 }
+        Grasp { tool_in_part: Pose::new(rotation, outward * distance_m), approach: outward * (-0.06 * size) }
     };
-    let ends = [Vec3::Z, -Vec3::Z].map(|z| grasp(z, BAR_M));
-    let sides = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y].map(|side| grasp(side, THIN_M));
+    let ends = [Vec3::Z, -Vec3::Z].map(|z| grasp(z, BAR_M * size));
+    let sides = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y].map(|side| grasp(side, THIN_M * size));
     ends.into_iter().chain(sides).collect()
 }
 
@@ -52,6 +110,8 @@ pub struct Pair {
     pub members: Vec<Member>,
     /// Joint values of the arms at the start.
     pub start: Vec<Vec<f64>>,
+    /// Size of the bar and of the motions: that of the smallest arm.
+    pub size: f64,
 }
 
 impl Pair {
@@ -62,49 +122,76 @@ impl Pair {
 
     /// Like [`Self::new`], with a block: its middle, and half of its size.
     pub fn among(count: usize, distance_m: f64, block: Option<(Vec3, Vec3)>) -> Self {
-        let (robot, tip) = arm();
+        let arm = ArmModel::rx60b();
+        Self::of(&vec![&arm; count], distance_m, block).unwrap()
+    }
+
+    /// These arms; the distance (m) and the block are those of an arm of size 1. `None` if they cannot start like this.
+    pub fn of(arms: &[&ArmModel], distance_m: f64, block: Option<(Vec3, Vec3)>) -> Option<Self> {
+        let size = arms.iter().map(|arm| arm.size).fold(f64::INFINITY, f64::min);
         let mut builder = Scene::builder();
-        let limits = JointLimits::of_chain(&robot.chain, 0.3, 0.3, 2.0);
         let mut members = Vec::new();
-        for index in 0..count {
-            let angle = std::f64::consts::TAU * index as f64 / count as f64;
+        for (index, arm) in arms.iter().enumerate() {
+            let angle = std::f64::consts::TAU * index as f64 / arms.len() as f64;
             let turn = Rotation::from_axis_angle(Vec3::Z, angle);
-            let base = Pose::new(turn, turn * Vec3::X * -distance_m);
-            let id = builder.robot(["one", "two", "three"][index], robot.clone(), base);
+            let base = Pose::new(turn, turn * Vec3::X * (-distance_m * arm.size));
+            let id = builder.robot(["one", "two", "three"][index], arm.robot.clone(), base);
             members.push(Member {
                 robot: id,
-                tip,
-                tool_in_tip: Pose::from_translation(Vec3::Z * HAND_M),
-                limits: limits.clone(),
-                hand: vec![tip],
-                grasps: grasps(),
+                tip: arm.tip,
+                tool_in_tip: arm.tool_in_tip(),
+                limits: JointLimits::of_chain(&arm.robot.chain, 0.3, 0.3, 2.0),
+                hand: vec![arm.tip],
+                grasps: grasps(size),
             });
         }
         // The first arm holds the bar at its lower end; the bar points away from it.
-        let start = Pose::new(Rotation::from_z(Vec3::X), Vec3::new(0.62 - distance_m, 0.0, 0.45));
-        let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(THIN_M, THIN_M, BAR_M) });
+        let at = Vec3::new((0.62 - distance_m) * arms[0].size, 0.0, 0.45 * arms[0].size);
+        let start = Pose::new(Rotation::from_z(Vec3::X), at);
+        let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(THIN_M, THIN_M, BAR_M) * size });
         builder.object(Object { name: "bar".into(), shape, in_world: start });
         if let Some((at, half_extents)) = block {
             let shape = Shape::Cuboid(Cuboid { half_extents });
             builder.object(Object { name: "table".into(), shape, in_world: Pose::from_translation(at) });
         }
-        let scene = builder.build().unwrap();
-        let chain = &robot.chain;
-        let mut solver = IkSolver::new(chain, tip, members[0].tool_in_tip, IkOptions::default());
-        let tool = scene.robots()[0].base_in_world.inverse_mul(&start) * members[0].grasps[1].tool_in_part;
-        let held = solver.solve(&tool, &[0.0, 0.5, 1.5, 0.0, 0.3, 0.0]).unwrap().q;
-        let mut all = vec![vec![0.0, 0.0, 1.57, 0.0, 0.5, 0.0]; count];
-        all[0] = held;
-        Self { scene, members, start: all }
+        let scene = builder.build().ok()?;
+        let base_in_world = scene.robots()[0].base_in_world;
+        let held = arms[0].holding(&(base_in_world.inverse_mul(&start) * members[0].grasps[1].tool_in_part))?;
+        let mut all = vec![held];
+        for arm in &arms[1..] {
+            all.push(arm.raised()?);
+        }
+        Some(Self { scene, members, start: all, size })
     }
 
     /// Like [`Self::new`], but only the first arm can grasp the bar.
     pub fn alone(count: usize, distance_m: f64) -> Self {
-        let mut pair = Self::new(count, distance_m);
-        for member in &mut pair.members[1..] {
+        Self::new(count, distance_m).with_one_hand()
+    }
+
+    /// The same cell, in which only the first arm can grasp the bar.
+    pub fn with_one_hand(mut self) -> Self {
+        for member in &mut self.members[1..] {
             member.grasps.iter_mut().for_each(|grasp| grasp.tool_in_part.translation = Vec3::Z * 10.0);
         }
-        pair
+        self
+    }
+
+    /// Whether nothing touches at the start.
+    pub fn can_start(&self) -> bool {
+        let robots = self.members.iter().map(|m| Selection::Robot(m.robot));
+        let mut checker = Checker::new(&self.scene, CheckerOptions::default());
+        let mut state = self.state();
+        let at = &self.members[0];
+        let held = Attachment {
+            robot: at.robot,
+            link: at.tip,
+            in_link: at.tool_in_tip * at.grasps[1].tool_in_part.inverse(),
+            touch_links: at.hand.clone(),
+            visiting_links: Vec::new(),
+        };
+        state.attach_at(&self.scene, ObjectId(0), held).unwrap();
+        robots.into_iter().all(|robot| checker.between(robot, Selection::All).collides(&state).is_none())
     }
 
     pub fn state(&self) -> SceneState {
@@ -141,11 +228,17 @@ impl Reach {
         m.grasps.iter().any(|g| {
             let pre = Pose::new(g.tool_in_part.rotation, g.tool_in_part.translation - g.approach);
             solver
-                .solve_all(&(in_root * g.tool_in_part), &[0.0; 6])
+                .solve_all(&(in_root * g.tool_in_part), &vec![0.0; m.limits.len()])
                 .iter()
                 .any(|q| solver.refine(&(in_root * pre), &mut q.clone()))
         })
     }
+}
+
+/// Whether one of the arms could hold the bar at every pose of a motion.
+pub fn one_arm_covers(pair: &Pair, motion: &[Pose]) -> bool {
+    let mut reach = Reach::new(pair);
+    (0..pair.members.len()).any(|m| motion.iter().step_by(5).all(|pose| reach.holds(pair, m, pose)))
 }
 
 /// A straight motion of the bar: poses every 20 ms.
@@ -164,9 +257,10 @@ pub fn motion(random: &mut SplitMix, pair: &Pair, start: Pose, reach_m: f64, cor
             break;
         }
         let at = Vec3::new(random.between(-reach_m, reach_m), random.between(-0.3, 0.3), random.between(0.2, 0.6));
+        let at = at * pair.size;
         let turn = Rotation::from_rotation_vector(Vec3::from(random.within::<3>(1.0)));
         let (from, to) = (*poses.last().unwrap(), Pose::new(turn * start.rotation, at));
-        let length = from.translation.distance(to.translation) / 0.15;
+        let length = from.translation.distance(to.translation) / (0.15 * pair.size).min(MOTION_M_S);
         let turned = (from.rotation.inverse() * to.rotation).angle() / 0.6;
         let pieces = (length.max(turned) / 0.02).ceil().max(1.0);
         let way: Vec<Pose> = (1..=pieces as usize).map(|k| from.interpolate(&to, k as f64 / pieces)).collect();

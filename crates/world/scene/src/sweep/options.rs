@@ -19,14 +19,16 @@ pub struct SweepOptions {
     /// resolution is never finer than the rounding of poses of that size (about 1e-14 of the largest coordinate). 0,
     /// negative numbers and NaN select that finest resolution.
     pub tolerance_m: f64,
+    /// Leaves out pairs that do not move relative to each other: what rests in contact is no hit then.
+    pub moving_only: bool,
     /// Largest number of distances of exact shapes. Beyond it, the answer is a hit that is not [`SweepHit::certain`].
     pub max_steps: u32,
 }
 
 impl Default for SweepOptions {
-    /// Contact (no clearance) to 0.1 mm, 20,000 distances.
+    /// Contact (no clearance) to 0.1 mm, all pairs, 20,000 distances.
     fn default() -> Self {
-        Self { clearance_m: 0.0, tolerance_m: 1e-4, max_steps: 20_000 }
+        Self { clearance_m: 0.0, tolerance_m: 1e-4, moving_only: false, max_steps: 20_000 }
     }
 }
 

@@ -136,6 +136,9 @@ impl SweepSearch {
             }
             let sides = trajectory.sides(core.scene, a, b);
             let bound = trajectory.bound(sides[0]).relative_to(trajectory.bound(sides[1]));
+            if options.moving_only && bound.speed == 0.0 {
+                continue;
+            }
             self.open.push(OpenTime { track: self.tracks.len(), from: 0.0, to: 1.0 });
             let (hit_below, free_above) = (limit + 0.9 * tolerance, limit + 0.5 * tolerance);
             self.tracks.push(PairTrack { pair: index, sides, bound, near, hit_below, free_above });

@@ -1,0 +1,26 @@
+//! Where robots start that decide their motion themselves: guided ones, and virtual robots.
+
+use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
+use elbowroom_diagnostic::Diagnostic;
+use elbowroom_scene::Scene;
+
+/// The scene of a run, in which guided tools may enter the openings of their shields.
+pub(crate) fn scene(cell: &Cell) -> Result<Scene, Diagnostic> {
+    let mut model = QueryModel::of_cell(cell);
+    model.add_rules(cell.opened_pairs());
+    model.scene(OutOfReachProofs::Omit)
+}
+
+/// Whether every guided robot and every virtual robot can start as its table says, as a run demands.
+///
+/// # Errors
+/// [`Diagnostic`] at the line of the table of the first one that cannot.
+pub fn check_starts(cell: &Cell) -> Result<(), Diagnostic> {
+    let guidance = &cell.guidance;
+    if guidance.operators.is_empty() && guidance.virtual_robots.is_empty() {
+        return Ok(());
+    }
+    let scene = scene(cell)?;
+    guidance.operators.iter().try_for_each(|operator| operator.arm(cell, &scene, &mut Vec::new()).map(|_| ()))?;
+    guidance.virtual_robots.iter().try_for_each(|spec| spec.start(cell, &scene).map(|_| ()))
+}
