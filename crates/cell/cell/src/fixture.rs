@@ -1,10 +1,10 @@
 //! Virtual fixtures of a cell.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use elbowroom_proximity::TriMesh;
 use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_shared_control::{Guide, ShieldSettings, ShieldTarget};
+use elbowroom_shared_control::{Guide, Shield, ShieldSettings, ShieldTarget};
 
 /// A fixture that protects: `[fixture.NAME]` without `guide`.
 #[derive(Debug, Clone)]
@@ -21,6 +21,8 @@ pub struct CellFixture {
     pub tool: Option<FixtureTool>,
     /// Whether it is on at the start.
     pub active: bool,
+    /// The shield, once it was made.
+    pub(crate) made: OnceLock<Shield>,
 }
 
 /// A tool of a robot.

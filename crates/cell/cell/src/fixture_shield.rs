@@ -45,11 +45,19 @@ impl Cell {
 }
 
 impl CellFixture {
-    /// Generates the shield, or returns the one that was read, in the frame of the protected object.
+    /// The shield in the frame of the protected object: the one that was read, or a generated one, which is made once.
     ///
     /// # Errors
     /// [`Diagnostic`] at the line of the table: an object that bounds no solid, or a target off its surface.
-    pub fn shield(&self, cell: &Cell) -> Result<Shield, Diagnostic> {
+    pub fn shield(&self, cell: &Cell) -> Result<&Shield, Diagnostic> {
+        if let Some(made) = self.made.get() {
+            return Ok(made);
+        }
+        let shield = self.make_shield(cell)?;
+        Ok(self.made.get_or_init(|| shield))
+    }
+
+    fn make_shield(&self, cell: &Cell) -> Result<Shield, Diagnostic> {
         let (target, settings) = match &self.shield {
             ShieldSource::Mesh(mesh) => return Ok(Shield { mesh: mesh.clone(), passage: Vec::new() }),
             ShieldSource::Generated { target, settings } => (target, settings),

@@ -187,7 +187,7 @@ impl CellOperator {
         }
         for (index, fixture) in fixtures() {
             let in_world = cell.objects[fixture.protects.0].in_world;
-            let shield = ProtectedSurface::new(fixture.shield(cell)?.mesh, in_world);
+            let shield = ProtectedSurface::new(fixture.shield(cell)?.mesh.clone(), in_world);
             let refused =
                 |e: NavigatorError| Diagnostic::new(&cell.file, fixture.line, format!("the shield is not usable: {e}"));
             add(shield.map_err(refused)?, SurfaceOwner::Shield(index));

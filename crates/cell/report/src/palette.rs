@@ -34,5 +34,7 @@ pub fn of_robot(i: usize) -> &'static str {
 pub const TOOL: &str = "#59636f";
 /// Colour of objects.
 pub const OBJECT: &str = "#9aa3ad";
+/// Colour of shields of virtual fixtures.
+pub const SHIELD: &str = "#12a5a5";
 /// Colour of moving objects.
 pub const MOVING: &str = "#8a6fb3";

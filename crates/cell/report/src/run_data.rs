@@ -2,7 +2,7 @@
 
 use elbowroom_kinematics::LinkId;
 use elbowroom_query::watch::{WatchStatus, WatchedObstacle};
-use elbowroom_sim::{Recording, RegionPoses, RobotTrack, RunEvent, Sample, SensorTrack, Span};
+use elbowroom_sim::{EventRow, Recording, RegionPoses, RobotTrack, RunEvent, Sample, SensorTrack, Span};
 use elbowroom_spatial::Pose;
 use serde_json::{Value, json};
 
@@ -34,6 +34,17 @@ pub fn frames(rec: &Recording) -> Vec<usize> {
     frames.sort_unstable();
     frames.dedup();
     frames
+}
+
+/// When a fixture was switched on and off: time and state.
+fn switches(rec: &Recording, fixture: &str) -> Vec<Value> {
+    let of_fixture = rec.events.iter().filter(|e| e.region == fixture);
+    let change = |e: &EventRow| match e.event {
+        RunEvent::On => Some(json!([e.t_s, true])),
+        RunEvent::Off => Some(json!([e.t_s, false])),
+        _ => None,
+    };
+    of_fixture.filter_map(change).collect()
 }
 
 /// Data of one run.
@@ -76,6 +87,8 @@ pub fn run(scene: &ReportScene, label: &str, rec: &Recording, packer: &mut Array
     json!({
         "label": label, "monitored": rec.monitored, "duration_s": rec.duration_s, "frames": frames.len(),
         "opens_s": opens_s(rec), "t": packer.add(&times, 1, TIME_STEP_S), "robots": robots, "regions": regions, "objects": objects,
+        // Per shield its changes: time and state.
+        "shields": scene.shields.iter().map(|s| switches(rec, &s.name)).collect::<Vec<_>>(),
         "sensors": rec.sensors.iter().map(sensor).collect::<Vec<_>>(),
     })
 }

@@ -1,9 +1,9 @@
 //! Geometry of the 3-D scene.
 
-use elbowroom_cell::Cell;
+use elbowroom_cell::{Cell, CellFixture};
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_monitor::Volume;
-use elbowroom_proximity::{Shape, tessellate::tessellate};
+use elbowroom_proximity::{Shape, repair::merge_targets, tessellate::tessellate};
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
 use elbowroom_scene::Object;
 use elbowroom_spatial::{Pose, Vec3};
@@ -12,6 +12,8 @@ use crate::palette;
 
 /// Largest chord error of curved surfaces, m.
 pub(crate) const CHORD_ERROR_M: f64 = 1e-3;
+/// Levels along the longest side of a shield: smaller details are not drawn.
+const SHIELD_LEVELS: f64 = 100.0;
 
 /// Geometry of a cell, as triangles.
 #[derive(Debug, Clone, Default)]
@@ -22,6 +24,8 @@ pub struct ReportScene {
     pub robots: Vec<ReportRobot>,
     /// Objects at their initial poses.
     pub objects: Vec<ReportObject>,
+    /// Shields of virtual fixtures.
+    pub shields: Vec<ReportShield>,
 }
 
 /// Geometry of a robot.
@@ -73,6 +77,21 @@ pub struct ReportObject {
     pub in_world: Pose,
 }
 
+/// The shield of a virtual fixture.
+#[derive(Debug, Clone)]
+pub struct ReportShield {
+    /// Name of the fixture.
+    pub name: String,
+    /// Vertices, m.
+    pub vertices: Vec<Vec3>,
+    /// Vertex indices.
+    pub triangles: Vec<[u32; 3]>,
+    /// Pose of the shield.
+    pub in_world: Pose,
+    /// Whether it is on at the start.
+    pub active: bool,
+}
+
 impl ReportScene {
     /// An empty scene.
     pub fn new() -> Self {
@@ -94,6 +113,7 @@ impl ReportScene {
             robot.gripped = cell.grips(RobotId(r)).into_iter().map(volume).collect();
         }
         scene.title = cell.title();
+        scene.shields = cell.guidance.fixtures.iter().filter_map(|fixture| shield(cell, fixture)).collect();
         cell.objects.iter().fold(scene, Self::object)
     }
 
@@ -163,6 +183,21 @@ fn shown(robot: &Robot, link: usize) -> &[Collider] {
     } else {
         &[]
     }
+}
+
+/// A shield, coarse enough for a page; `None` if it cannot be made, which a run reports.
+fn shield(cell: &Cell, fixture: &CellFixture) -> Option<ReportShield> {
+    let mesh = &fixture.shield(cell).ok()?.mesh;
+    let coarse_m = mesh.aabb().extent().max_element() / SHIELD_LEVELS;
+    let target = merge_targets(mesh.vertices(), coarse_m);
+    let merged = mesh.triangles().iter().map(|corners| corners.map(|corner| target[corner as usize]));
+    Some(ReportShield {
+        name: fixture.name.clone(),
+        vertices: mesh.vertices().to_vec(),
+        triangles: merged.collect(),
+        in_world: cell.objects[fixture.protects.0].in_world,
+        active: fixture.active,
+    })
 }
 
 fn meshes(colliders: &[Collider], color: [u8; 3]) -> Vec<ReportMesh> {

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::packing::{ArrayPacker, pose_values};
 use crate::page_meshes::{MeshUse, PageMeshes};
-use crate::scene::{CHORD_ERROR_M, ReportMesh, ReportObject, ReportRobot, ReportScene};
+use crate::scene::{CHORD_ERROR_M, ReportMesh, ReportObject, ReportRobot, ReportScene, ReportShield};
 use crate::{palette, region_surface, run_data};
 
 /// A mesh with more triangles than this is drawn, but the page computes no distances to it.
@@ -35,6 +35,7 @@ pub fn data(scene: &ReportScene, runs: &[(&str, &Recording)]) -> PageData {
         "robots": scene.robots.iter().map(|r| robot(r, &mut pack)).collect::<Vec<_>>(),
         "objects": scene.objects.iter().map(|o| object(o, moves(o), &mut pack)).collect::<Vec<_>>(),
         "regions": regions.iter().enumerate().map(|(i, r)| region(scene, i, &r.into(), &mut pack)).collect::<Vec<_>>(),
+        "shields": shields(scene, &mut pack),
         "runs": runs.iter().map(|(label, rec)| run_data::run(scene, label, rec, pack.packer)).collect::<Vec<_>>(),
     });
     let mut json = json;
@@ -53,6 +54,7 @@ pub fn cell_data(cell: &Cell) -> PageData {
         "robots": scene.robots.iter().map(|r| robot(r, &mut pack)).collect::<Vec<_>>(),
         "objects": objects,
         "regions": cell.regions.iter().enumerate().map(|(i, r)| region(&scene, i, &r.into(), &mut pack)).collect::<Vec<_>>(),
+        "shields": shields(&scene, &mut pack),
     });
     json["meshes"] = meshes.entries().into();
     PageData { json, arrays: packer.bytes().to_vec() }
@@ -202,6 +204,17 @@ fn region(scene: &ReportScene, index: usize, region: &PageRegion<'_>, pack: &mut
         "measured": scene.robots.iter().enumerate().map(of_robot).collect::<Vec<_>>(),
         "guards_load": Part::Load.counts_for(region.guards),
     })
+}
+
+fn shields(scene: &ReportScene, pack: &mut Pack<'_>) -> Vec<Value> {
+    let shield = |shield: &ReportShield| {
+        let mesh = pack.mesh(&(shield.vertices.clone(), shield.triangles.clone()), MeshUse::Drawn);
+        json!({
+            "name": shield.name, "mesh": mesh, "color": palette::SHIELD, "pose": pose_values(&shield.in_world),
+            "active": shield.active,
+        })
+    };
+    scene.shields.iter().map(shield).collect()
 }
 
 /// Indices of the volumes that count for a region with these guards.

@@ -5,4 +5,5 @@ mod moving_objects;
 mod page_data;
 mod report;
 mod report_demo;
+mod shields;
 mod tools_and_parts;

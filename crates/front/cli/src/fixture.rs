@@ -37,14 +37,14 @@ pub(crate) fn fixture(args: &FixtureArgs) -> Result<ExitStatus, Failure> {
     let fixture = named(&cell, args)?;
     let shield = fixture.shield(&cell)?;
     let object = &cell.objects[fixture.protects.0];
-    let passage = fixture.passage(&shield, &cell);
+    let passage = fixture.passage(shield, &cell);
     if let Some(path) = &args.out {
         let mut bytes = Vec::new();
         stl::write_binary(&mut bytes, &[in_world(&shield.mesh, &object.in_world, &fixture.name)])
             .map_err(|e| Failure::Wrong(e.to_string()))?;
         write_bytes(path, bytes)?;
     }
-    let answer = answer(fixture, &object.name, &shield, passage, &object.in_world);
+    let answer = answer(fixture, &object.name, shield, passage, &object.in_world);
     if args.json {
         print_json(&answer)?;
     } else {

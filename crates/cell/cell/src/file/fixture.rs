@@ -50,6 +50,7 @@ fn fixture(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellFixture> {
         shield,
         tool: t.get("tool").map(|v| tool(&v, cell)).transpose()?,
         active: t.flag_or("active", true)?,
+        made: std::sync::OnceLock::new(),
     })
 }
 

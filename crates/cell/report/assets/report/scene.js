@@ -59,6 +59,7 @@ const Stage = (() => {
         level: cell.moved ? 1 : run.robots[i].override[cell.frame.frame],
       })),
       objects: cell.objects, regions: cell.regions.map(region), lines: pairs.map(line),
+      shields: Data.shields.map((shield, i) => run.shields[i].findLast(([since]) => since <= t)?.[1] ?? shield.active),
     });
   }
 

@@ -104,6 +104,15 @@ function createStage(corners, lineCount) {
     return { group, solid, shell, edges, label };
   });
 
+  const shields = Data.shields.map((shield) => {
+    const glassy = new THREE.Mesh(meshOf(shield.mesh), glass(shield.color, 0.3));
+    glassy.renderOrder = 3;
+    glassy.visible = shield.active;
+    setPose(glassy, shield.pose);
+    scene.add(glassy);
+    return glassy;
+  });
+
   // Lines between two points, with the distance.
   const lines = Array.from({ length: lineCount }, () => {
     const ends = new THREE.BufferGeometry();
@@ -241,7 +250,7 @@ function createStage(corners, lineCount) {
   }
 
   // Shows an instant: per robot { links, absent, tcp, level }, the level from 0 to 1 or null; per object { pose }; per region
-  // { pose, active, inside, warned, state }; per line { onA, onB, text } or null.
+  // { pose, active, inside, warned, state }; per line { onA, onB, text } or null; per shield whether it is on, if that changes.
   function show(instant) {
     shown = instant;
     robots.forEach((solids, i) => {
@@ -257,6 +266,7 @@ function createStage(corners, lineCount) {
     lines.forEach((_, i) => showLine(i, instant.lines[i]));
     objects.forEach((object, i) => setPose(object, instant.objects[i].pose));
     instant.regions.forEach((region, i) => showRegion(i, region));
+    instant.shields?.forEach((isOn, i) => { shields[i].visible = isOn; });
     request();
   }
 
