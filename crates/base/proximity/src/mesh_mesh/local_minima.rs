@@ -31,9 +31,9 @@ pub struct LocalMinimum {
 /// surfaces has a local minimum, once per pair and in no particular order. False if a pose is not usable: then nothing
 /// is known.
 ///
-/// Every local minimum up to the margin is found, so also the distance itself if it is not larger, and all triangles
-/// that touch. A minimum at a corner or an edge is listed with some or all triangles around it. A mesh inside the
-/// other is not noticed; see [`collides`](crate::collides).
+/// Every local minimum up to the margin is found, so also the distance itself if it is not larger. A minimum at a
+/// corner or an edge is listed with some or all triangles around it. Of surfaces that cross, some triangles that touch
+/// are listed, or none; a mesh inside the other is not noticed. See [`collides`](crate::collides).
 ///
 /// ```
 /// use std::sync::Arc;

@@ -20,6 +20,7 @@ mod leaf_pairs;
 mod local_minima;
 mod mesh_features;
 mod mesh_pair;
+mod nearest_directions;
 mod nearest_pair;
 mod nearest_pair_search;
 mod node_kernel;

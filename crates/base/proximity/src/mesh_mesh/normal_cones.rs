@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use elbowroom_spatial::Vec3;
 
+use super::nearest_directions::NearestDirections;
 use super::relative_placement::{AffineF32, RelativePlacement};
 use super::vertex_faces::VertexFaces;
 use crate::TriMesh;
@@ -160,7 +161,7 @@ fn rotated(rows: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
 /// and Cohen, *Spatialized normal cone hierarchies*, 2001).
 ///
 /// The cone of a part contains every outward direction in which a point of the part can be the nearest of its
-/// neighbourhood: the normals of its triangles and of all triangles that share a corner with them. Parts that are open,
+/// neighbourhood: the normals of its triangles, and what lies beyond them at convex edges and corners. Parts that are open,
 /// not outward, joined across a seam or beside a triangle without a usable normal have a cone of all directions, so
 /// they are slower and not left out.
 ///
@@ -255,13 +256,14 @@ fn outward_triangles(mesh: &TriMesh, vertex_faces: &VertexFaces) -> Vec<bool> {
 
 fn cones_of_triangles(mesh: &TriMesh, vertex_faces: &VertexFaces, outward: &[bool]) -> Vec<NormalCone> {
     let normals = normals(mesh);
+    let directions = NearestDirections::new(mesh, vertex_faces, &normals);
     let cone = |t: usize| {
-        let neighbours = vertex_faces.neighbours(mesh, t);
+        let mut neighbours = vertex_faces.neighbours(mesh, t);
         let is_clear = |t: usize| outward[t] && normals[t].is_some() && !vertex_faces.is_welded(mesh, t);
-        if !neighbours.clone().all(is_clear) {
+        if !neighbours.all(is_clear) {
             return NormalCone::EVERY_DIRECTION;
         }
-        NormalCone::around(neighbours.filter_map(|t| normals[t]).map(|n| (n, ANGLE_MARGIN)))
+        NormalCone::around(directions.of_triangle(t).map(|d| (d, ANGLE_MARGIN)))
     };
     (0..mesh.triangles().len()).map(cone).collect()
 }

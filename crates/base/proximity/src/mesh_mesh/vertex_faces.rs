@@ -36,6 +36,11 @@ impl VertexFaces {
         Self { welded, first, faces }
     }
 
+    /// The vertex that represents this one.
+    pub fn representative(&self, vertex: u32) -> u32 {
+        self.welded[vertex as usize]
+    }
+
     /// The triangles around the vertex that represents this one.
     pub fn around(&self, vertex: u32) -> &[u32] {
         let v = self.welded[vertex as usize] as usize;
