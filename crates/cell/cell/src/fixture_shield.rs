@@ -75,12 +75,11 @@ impl CellFixture {
         if let ShieldSource::Generated { settings, .. } = &self.shield { Some(settings) } else { None }
     }
 
-    /// How the tool of the fixture passes the opening of its shield; `None` without a tool that has a solid, or a shield
+    /// How the tool of the fixture, with everything on its link, passes the opening of its shield; `None` without a tool that has a solid, or a shield
     /// that was read: nothing says what the tool is to reach.
     pub fn passage(&self, shield: &Shield, cell: &Cell) -> Option<Passage> {
-        let (collider, tcp_in_link) = self.tool?.solid(cell)?;
-        let tool_in_tcp = tcp_in_link.inverse() * collider.in_link;
-        Some(shield.passage_of(&collider.shape, &tool_in_tcp, self.settings()?))
+        let tool = Shape::Mesh(self.tool?.surface_of_link(cell)?);
+        Some(shield.passage_of(&tool, &Pose::IDENTITY, self.settings()?))
     }
 
     /// An error in the units of the file, with places in the world.

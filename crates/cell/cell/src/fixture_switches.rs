@@ -44,6 +44,11 @@ impl FixtureSwitches {
         next.checked_sub(1).map_or(active, |last| states[last].1)
     }
 
+    /// The times at which something may change, s.
+    pub fn times(&self) -> impl Iterator<Item = f64> + '_ {
+        self.columns.iter().flat_map(|(_, states)| states).map(|(t_s, _)| *t_s)
+    }
+
     fn states(&self, fixture: FixtureRef) -> Option<&Vec<(f64, bool)>> {
         self.columns.iter().find(|(of, _)| *of == fixture).map(|(_, states)| states)
     }

@@ -7,7 +7,7 @@ use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_proximity::TriMesh;
 use elbowroom_proximity::contact::triangle_surface;
-use elbowroom_robot::ObjectId;
+use elbowroom_robot::{Collider, ObjectId};
 use elbowroom_scene::{Scene, SceneState, Selection};
 use elbowroom_shared_control::force::{
     ArmField, ArmForces, BodySettings, FieldPair, ImpedancePort, ImpedanceSettings, Response, VirtualBody,
@@ -16,10 +16,12 @@ use elbowroom_shared_control::{GuidedArm, NavigatorError, ProtectedSurface, Surf
 use elbowroom_spatial::Vec3;
 
 use crate::operated_arm::{FixturesOn, SurfaceOwner};
-use crate::{Cell, CellFixture, CellForce, CellOperator, FixtureRef, ForceOther, ForceResponse, OperatedArm};
+use crate::{
+    Cell, CellFixture, CellForce, CellOperator, FixtureRef, FixtureTool, ForceOther, ForceResponse, OperatedArm,
+};
 
 /// Chord error of curved surfaces and tools, metres.
-const CHORD_M: f64 = 1e-4;
+pub(crate) const CHORD_M: f64 = 1e-4;
 /// Distance from a guide at the start that is told, metres.
 const FAR_FROM_GUIDE_M: f64 = 2e-3;
 
@@ -51,7 +53,7 @@ impl CellOperator {
         chain_state.q.copy_from_slice(&robot.start);
         robot.robot.chain.forward(&mut chain_state);
         let tool_in_world = robot.base_in_world * chain_state.link_in_root(link) * tcp_in_link;
-        let on = FixturesOn::at(cell, self, f64::NEG_INFINITY);
+        let on = FixturesOn::at_start(cell, self);
         let (surfaces, owners) = self.surfaces(cell, &on, notes)?;
         let navigator = SurfaceNavigator::new(tool, surfaces, tool_in_world, self.settings)
             .map_err(|e| refused(format!("operator \"{}\": {}", self.name, in_words(e, cell))))?;
@@ -77,24 +79,18 @@ impl CellOperator {
         if let Some(forces) = forces.map_err(|e| refused(e.to_string()))? {
             arm.set_forces(forces);
         }
-        Ok(OperatedArm { arm, surfaces: owners, on, refused: None })
+        Ok(OperatedArm { arm, surfaces: owners, wanted: (on.clone(), false), on })
     }
 
     /// The surface of the tool in the frame of its point. If a shield may let its link into an object, everything on that
     /// link belongs to it.
     fn tool_surface(&self, cell: &Cell) -> Option<Arc<TriMesh>> {
-        let (solid, tcp_in_link) = self.tool.solid(cell)?;
         let is_let_in = cell.guidance.fixtures.iter().enumerate().any(|(index, f)| self.may_open(index, f));
-        let on_link = &cell.robots[self.robot.0].robot.colliders[self.tool.link(cell).0];
-        let parts = if is_let_in { on_link.as_slice() } else { std::slice::from_ref(solid) };
-        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-        for part in parts {
-            let mesh = triangle_surface(&part.shape, CHORD_M)?;
-            let (first, in_tcp) = (vertices.len() as u32, tcp_in_link.inverse() * part.in_link);
-            vertices.extend(mesh.vertices().iter().map(|p| in_tcp.transform_point(*p)));
-            triangles.extend(mesh.triangles().iter().map(|corners| corners.map(|corner| corner + first)));
+        if is_let_in {
+            self.tool.surface_of_link(cell)
+        } else {
+            surface_of(&[self.tool.solid(cell)?.0], self.tool, cell)
         }
-        TriMesh::new(vertices, triangles).ok().map(Arc::new)
     }
 
     /// The forces of the tool, which glides along the surfaces of `owners`; `None` without.
@@ -194,6 +190,27 @@ impl CellOperator {
         }
         Ok((surfaces, owners))
     }
+}
+
+impl FixtureTool {
+    /// The surface of everything on the link that carries the tool, in the frame of its point.
+    pub(crate) fn surface_of_link(self, cell: &Cell) -> Option<Arc<TriMesh>> {
+        let on_link = &cell.robots[self.robot.0].robot.colliders[self.link(cell).0];
+        surface_of(&on_link.iter().collect::<Vec<_>>(), self, cell)
+    }
+}
+
+/// The surface of parts of a tool's link, in the frame of its point.
+fn surface_of(parts: &[&Collider], tool: FixtureTool, cell: &Cell) -> Option<Arc<TriMesh>> {
+    let (_, tcp_in_link) = tool.solid(cell)?;
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for part in parts {
+        let mesh = triangle_surface(&part.shape, CHORD_M)?;
+        let (first, in_tcp) = (vertices.len() as u32, tcp_in_link.inverse() * part.in_link);
+        vertices.extend(mesh.vertices().iter().map(|p| in_tcp.transform_point(*p)));
+        triangles.extend(mesh.triangles().iter().map(|corners| corners.map(|corner| corner + first)));
+    }
+    TriMesh::new(vertices, triangles).ok().map(Arc::new)
 }
 
 fn in_words(e: NavigatorError, cell: &Cell) -> String {

@@ -1,9 +1,9 @@
 //! The arm of an operator, with the fixtures of its tool.
 
 use elbowroom_robot::ObjectId;
-use elbowroom_shared_control::{GuidedArm, NavigatorError};
+use elbowroom_shared_control::GuidedArm;
 
-use crate::{Cell, CellOperator, FixtureRef};
+use crate::{Cell, CellFixture, CellGuide, CellOperator, FixtureRef};
 
 /// What a surface along which a tool glides belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,29 +18,33 @@ pub(crate) enum SurfaceOwner {
 pub(crate) struct FixturesOn {
     /// Per fixture that protects.
     shields: Vec<bool>,
-    /// The first guide that is on.
+    /// The guide that is on.
     guide: Option<usize>,
 }
 
 impl FixturesOn {
-    /// Those that an operator wants to be on at a time (s); minus infinity is the start.
-    pub fn at(cell: &Cell, operator: &CellOperator, t_s: f64) -> Self {
-        let (guidance, switches) = (&cell.guidance, &operator.switches);
-        let is_shield_on = |(index, f): (usize, &crate::CellFixture)| {
-            f.tool == Some(operator.tool) && switches.is_on(FixtureRef::Shield(index), f.active, t_s)
-        };
-        let is_guide_on = |(index, g): (usize, &crate::CellGuide)| {
-            g.tool == operator.tool && switches.is_on(FixtureRef::Guide(index), g.active, t_s)
-        };
-        Self {
-            shields: guidance.fixtures.iter().enumerate().map(is_shield_on).collect(),
-            guide: guidance.guides.iter().enumerate().position(is_guide_on),
+    /// Those that an operator wants to be on at the start.
+    pub fn at_start(cell: &Cell, operator: &CellOperator) -> Self {
+        let mut on = Self { shields: vec![false; cell.guidance.fixtures.len()], guide: None };
+        on.set(cell, operator, f64::NEG_INFINITY);
+        on
+    }
+
+    /// Makes them those that an operator wants to be on at a time, s.
+    fn set(&mut self, cell: &Cell, operator: &CellOperator, t_s: f64) {
+        let CellOperator { tool, switches, .. } = operator;
+        for (index, (is_on, f)) in self.shields.iter_mut().zip(&cell.guidance.fixtures).enumerate() {
+            *is_on = f.tool == Some(*tool) && switches.is_on(FixtureRef::Shield(index), f.active, t_s);
         }
+        let is_on = |(index, g): (usize, &CellGuide)| {
+            g.tool == *tool && switches.is_on(FixtureRef::Guide(index), g.active, t_s)
+        };
+        self.guide = cell.guidance.guides.iter().enumerate().position(is_on);
     }
 
     /// Whether the tool keeps off a surface: a shield that is on takes the place of its object.
     pub fn keep_off(&self, cell: &Cell, surface: SurfaceOwner) -> bool {
-        let protects = |(f, is_on): (&crate::CellFixture, &bool)| *is_on && surface == SurfaceOwner::Object(f.protects);
+        let protects = |(f, is_on): (&CellFixture, &bool)| *is_on && surface == SurfaceOwner::Object(f.protects);
         match surface {
             SurfaceOwner::Shield(index) => self.shields[index],
             SurfaceOwner::Object(_) => !cell.guidance.fixtures.iter().zip(&self.shields).any(protects),
@@ -60,8 +64,8 @@ pub struct OperatedArm<'s> {
     pub arm: GuidedArm<'s>,
     pub(crate) surfaces: Vec<SurfaceOwner>,
     pub(crate) on: FixturesOn,
-    /// Those that were refused last.
-    pub(crate) refused: Option<FixturesOn>,
+    /// Those that the operator wants to be on, and whether that was refused.
+    pub(crate) wanted: (FixturesOn, bool),
 }
 
 /// What became of a switch of fixtures.
@@ -76,8 +80,8 @@ pub enum FixtureChange {
 }
 
 impl OperatedArm<'_> {
-    /// Switches the fixtures as the stream wants it at a time (s), all that change at once. Reports each that changes or is
-    /// refused, with its name.
+    /// Switches the fixtures as the stream wants it at a time (s): all shields that change at once, and the guide. Reports each
+    /// that changes or is refused, with its name.
     pub fn switch(
         &mut self,
         cell: &Cell,
@@ -88,39 +92,39 @@ impl OperatedArm<'_> {
         if operator.switches.is_empty() {
             return;
         }
-        let wanted = FixturesOn::at(cell, operator, t_s);
-        if wanted == self.on {
-            self.refused = None;
+        self.wanted.0.set(cell, operator, t_s);
+        self.switch_guide(cell, &mut report);
+        let Self { arm, surfaces, on, wanted: (wanted, was_refused) } = self;
+        if wanted.shields == on.shields {
+            *was_refused = false;
             return;
         }
-        let surfaces = &self.surfaces;
-        let switched: Result<(), NavigatorError> = self.arm.switch(|index| wanted.keep_off(cell, surfaces[index]));
-        let is_refused = switched.is_err();
-        if is_refused && self.refused.as_ref() == Some(&wanted) {
-            return;
-        }
-        let change = |is_on: bool| match (is_refused, is_on) {
-            (true, _) => FixtureChange::Refused,
-            (false, true) => FixtureChange::On,
-            (false, false) => FixtureChange::Off,
-        };
-        let (guides, fixtures) = (&cell.guidance.guides, &cell.guidance.fixtures);
-        for ((fixture, before), after) in fixtures.iter().zip(&self.on.shields).zip(&wanted.shields) {
-            if before != after {
-                report(&fixture.name, change(*after));
+        let is_refused = arm.switch(|index| wanted.keep_off(cell, surfaces[index])).is_err();
+        for ((fixture, before), after) in cell.guidance.fixtures.iter().zip(&mut on.shields).zip(&wanted.shields) {
+            match (*before == *after, is_refused) {
+                (true, _) => {}
+                (false, true) if *was_refused => {}
+                (false, true) => report(&fixture.name, FixtureChange::Refused),
+                (false, false) => {
+                    report(&fixture.name, if *after { FixtureChange::On } else { FixtureChange::Off });
+                    *before = *after;
+                }
             }
         }
-        if self.on.guide != wanted.guide {
-            self.on.guide.iter().for_each(|index| report(&guides[*index].name, change(false)));
-            wanted.guide.iter().for_each(|index| report(&guides[*index].name, change(true)));
-        }
-        if is_refused {
-            self.refused = Some(wanted);
+        *was_refused = is_refused;
+    }
+
+    fn switch_guide(&mut self, cell: &Cell, report: &mut impl FnMut(&str, FixtureChange)) {
+        let (guides, wanted) = (&cell.guidance.guides, self.wanted.0.guide);
+        let before = std::mem::replace(&mut self.on.guide, wanted);
+        if before == wanted {
             return;
         }
-        if self.on.guide != wanted.guide {
-            self.arm.set_guide(wanted.guide.map(|index| guides[index].guide.clone()));
+        for (index, change) in [(before, FixtureChange::Off), (wanted, FixtureChange::On)] {
+            if let Some(index) = index {
+                report(&guides[index].name, change);
+            }
         }
-        (self.on, self.refused) = (wanted, None);
+        self.arm.set_guide(wanted.map(|index| guides[index].guide.clone()));
     }
 }

@@ -185,7 +185,7 @@ fn shown(robot: &Robot, link: usize) -> &[Collider] {
     }
 }
 
-/// A shield, coarse enough for a page; `None` if it cannot be made, which a run reports.
+/// A shield, coarse enough for a page; `None` if it cannot be made, which a run reports where it needs it.
 fn shield(cell: &Cell, fixture: &CellFixture) -> Option<ReportShield> {
     let mesh = &fixture.shield(cell).ok()?.mesh;
     let coarse_m = mesh.aabb().extent().max_element() / SHIELD_LEVELS;

@@ -34,8 +34,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let checks = Simulation::of(&cell).check()?;
-    check_starts(&cell)?;
-    for w in recordings(&cell) {
+    for w in check_starts(&cell)?.into_iter().chain(recordings(&cell)) {
         note(format_args!("warning: {w}"));
     }
     if args.json {

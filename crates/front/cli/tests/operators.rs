@@ -236,6 +236,51 @@ fn a_stream_switches_a_fixture_unless_the_tool_is_in_its_opening() {
 }
 
 #[test]
+fn fixtures_that_would_not_protect_while_they_are_off_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let cell = above_a_block() + HOLE;
+    let column = |name: &str, values: [&str; 2]| {
+        let rows = values.map(|v| format!("{},1016.5,0,1330,1,0,0,0,{v}\n", if v == values[0] { 0.0 } else { 0.02 }));
+        format!("t_s,x,y,z,qx,qy,qz,qw,{name}\n{}", rows.concat())
+    };
+    let switched = column("fixture.hole", ["1", "0"]);
+    let guides = "[fixture.one]\nguide = \"plane\"\nat = [0, 0, 0]\nnormal = [0, 0, 1]\ntool = \"arm\"\n[fixture.two]\nguide = \"plane\"\nat = [0, 0, 0]\nnormal = [0, 0, 1]\ntool = \"arm\"\nactive = false\n";
+    let region = "[region.hole]\nshape = \"box\"\nfrom = [0, 900, 0]\nto = [100, 990, 100]\nwarning = 50\n";
+    let block = "shape = \"box\"\nsize = [80, 80, 60]";
+    for (cell, stream, expected) in [
+        (
+            cell.clone(),
+            column("fixture.hole", ["1", "-1"]),
+            &["hand.csv:3", "has -1 in the column `fixture.hole`", "0 or 1"][..],
+        ),
+        (cell.replace(block, "shape = \"sphere\"\nradius = 30"), switched.clone(), &["no box and no closed mesh"]),
+        (
+            cell.replace(block, &format!("{block}\nmotion = {{ via = [[900, 0, 1210]], speed = 10 }}")),
+            switched.clone(),
+            &["which moves; the shield would not", "stands still"],
+        ),
+        (
+            cell.replace("[operator.hand]", "[operator.hand]\ngap = 0.1"),
+            switched.clone(),
+            &["`gap` is too small", "gap = 0.5"],
+        ),
+        (
+            cell.clone() + guides,
+            column("fixture.two", ["0", "1"]),
+            &["at 0.02 s the guides \"one\" and \"two\" are both on"],
+        ),
+        (cell + region, switched, &["has the name of a region"]),
+    ] {
+        write(dir.path(), &cell, |_| [0.0; 3], 0.0);
+        std::fs::write(dir.path().join("hand.csv"), stream).unwrap();
+        let message = elbowroom(dir.path(), &["check", "cell.toml"]).expect(2).stderr;
+        for word in expected {
+            assert!(message.contains(word), "{word} is not in {message}");
+        }
+    }
+}
+
+#[test]
 fn operators_that_contradict_the_cell_are_refused_with_their_line() {
     let dir = tempfile::tempdir().unwrap();
     for (old, new, expected) in [

@@ -17,6 +17,7 @@ use common::{
     ArmModel, BAR_M, HAND_M, HAND_WIDE_M, Outcome, Pair, THIN_M, carry, carry_seen, motion, one_arm_covers, part_pose,
 };
 use elbowroom_cooperation::{CooperationSettings, VirtualRobot};
+use elbowroom_kinematics::JointId;
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::random::SplitMix;
 
@@ -148,8 +149,15 @@ fn hand_in_link(arm: &ArmModel) -> Vec3 {
 fn setup(pair: &Pair, arms: &[&ArmModel]) -> String {
     let describe = |(arm, base): (&&ArmModel, Pose)| {
         let (wide, long) = (HAND_WIDE_M * arm.size, 0.5 * HAND_M * arm.size);
+        let chain = &arm.robot.chain;
+        let joints = chain.joints().iter().enumerate().filter_map(|(index, joint)| {
+            let c = chain.coupling(JointId(index))?;
+            Some(format!("[{:?}, {}, {}, {}]", joint.name, c.index, c.multiplier, c.offset))
+        });
+        let joints: Vec<String> = joints.collect();
         format!(
-            "{{\"urdf\": {:?}, \"base\": {{\"rotation\": {:?}, \"at\": {:?}}}, \"tool\": {{\"link\": \"tool0\", \"half_extents\": [{wide}, {wide}, {long}], \"at\": {:?}}}}}",
+            "{{\"joints\": [{}], \"urdf\": {:?}, \"base\": {{\"rotation\": {:?}, \"at\": {:?}}}, \"tool\": {{\"link\": \"tool0\", \"half_extents\": [{wide}, {wide}, {long}], \"at\": {:?}}}}}",
+            joints.join(", "),
             std::fs::canonicalize(&arm.file).unwrap().display().to_string(),
             base.rotation.rows(),
             base.translation.to_array(),

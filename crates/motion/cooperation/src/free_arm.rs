@@ -14,6 +14,8 @@ const ROWS: usize = 16;
 const NOTICE_M: f64 = 0.005;
 /// Time until contact within which a pair is measured exactly, s.
 const EXACT_S: f64 = 0.05;
+/// Speed from which a pair is noticed in time for its gap, m/s; slower ones are near when they count.
+const SLOW_M_S: f64 = 0.2;
 /// Largest speed at which two parts are expected to approach each other, m/s.
 const FASTEST_M_S: f64 = 2.0;
 /// Distance between its own links from which an arm keeps them apart, m.
@@ -96,7 +98,7 @@ impl FreeArm {
         dt_s: f64,
     ) {
         self.attract(&arms[own].state, attraction, dt_s);
-        let notice_s = self.notice_s(&arms[own].state, dt_s);
+        let notice_s = self.notice_s(arms, dt_s, settings.gap_m);
         self.notice((scene, state, checker), motion, arms[own].robot, (notice_s, settings.gap_m));
         self.problem.clear();
         let pairs = std::mem::take(&mut self.pairs);
@@ -132,16 +134,19 @@ impl FreeArm {
         }
     }
 
-    /// Time until contact from which a pair is of no interest, s: beyond it, the distance exceeds the boundary distance.
+    /// Time until contact from which a pair is of no interest, s.
     ///
     /// Along any direction, the ratio of what the joints move and what they can decelerate is at most the longest time T in
-    /// which one of them stops, so `v²/(2·a) ≤ v·T/2`.
-    fn notice_s(&self, own: &ChainState, dt_s: f64) -> f64 {
-        let stop_s = own.qd.iter().zip(&self.limits).map(|(qd, l)| {
-            let fastest = (qd.abs() + l.acceleration * dt_s).min(l.velocity);
-            fastest / (l.acceleration * DECELERATION_SHARE)
-        });
-        dt_s + 0.5 * stop_s.fold(0.0, f64::max)
+    /// which one of them stops, so the boundary distance `v²/(2·a)` is at most `v·T/2`, and as much again for what the other
+    /// arms move, as far as they are like this one; and the gap.
+    fn notice_s(&self, arms: &[ArmMotion], dt_s: f64, gap_m: f64) -> f64 {
+        let stop_s = |arm: &ArmMotion| {
+            let joints = arm.state.qd.iter().zip(&self.limits);
+            let stops =
+                joints.map(|(qd, l)| (qd.abs() + l.acceleration * dt_s) / (l.acceleration * DECELERATION_SHARE));
+            stops.fold(0.0, f64::max)
+        };
+        dt_s + gap_m / SLOW_M_S + 0.5 * arms.iter().map(stop_s).sum::<f64>()
     }
 
     /// The nearest pairs between the arm and everything, with the gap of each, m.

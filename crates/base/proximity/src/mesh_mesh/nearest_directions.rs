@@ -68,11 +68,12 @@ impl<'m> NearestDirections<'m> {
             return;
         }
         let place = self.mesh.vertices()[vertex as usize];
-        let edges: Vec<Vec3> = faces
-            .iter()
-            .flat_map(|&t| self.mesh.corners(t as usize))
-            .filter_map(|corner| (corner - place).try_normalize())
-            .collect();
+        let mut edges: Vec<Vec3> = Vec::with_capacity(2 * faces.len());
+        for corner in faces.iter().flat_map(|&t| self.mesh.corners(t as usize)) {
+            if let Some(edge) = (corner - place).try_normalize().filter(|edge| !edges.contains(edge)) {
+                edges.push(edge);
+            }
+        }
         for (i, a) in edges.iter().enumerate() {
             for b in &edges[i + 1..] {
                 let across = a.cross(*b);

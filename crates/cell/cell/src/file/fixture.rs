@@ -23,6 +23,10 @@ const TARGET: &str = "target = { line = [[0, 0, 100], [50, 0, 100]] }   (or area
 
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("fixture")? {
+        if cell.regions.iter().any(|r| r.region.name == name) {
+            let what = format!("`{}` has the name of a region, and events name both", t.name);
+            return Err(t.error(what).hint("another name"));
+        }
         if t.get("guide").is_some() {
             let guide = super::guide::read(name, &t, cell)?;
             cell.guidance.guides.push(guide);

@@ -2,14 +2,17 @@
 
 use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
+use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
-use elbowroom_shared_control::NavigatorSettings;
+use elbowroom_shared_control::{NavigatorSettings, ProtectedSurface};
+use elbowroom_spatial::Pose;
 
 use super::definitions::robot_id;
 use super::fixture_tool::tool_of;
 use super::poses::read_with;
 use super::schema::{OPERATOR, names};
 use super::tools::with_exchanged_tools;
+use crate::guided_arm::CHORD_M;
 use crate::operator::{CellOperator, OperatorRow, OperatorStream};
 use crate::{Cell, FixtureRef, FixtureSwitches, FixtureTool, Units};
 
@@ -66,7 +69,7 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
             switches.add(fixture, states);
         }
     }
-    Ok(CellOperator {
+    let operator = CellOperator {
         name: name.to_owned(),
         line: t.line,
         robot,
@@ -80,7 +83,9 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
             acceleration_m_s2: length("acceleration", default.acceleration_m_s2)?,
             ..default
         },
-    })
+    };
+    check_fixtures(t, cell, &operator)?;
+    Ok(operator)
 }
 
 /// Age (s) from which a row is too old.
@@ -92,6 +97,50 @@ pub(super) fn stale_s(t: &Table<'_>, default_ms: f64) -> Result<f64> {
         return Err(v.error(what).hint("stale_ms = 100   (at most 1000)"));
     }
     Ok(1e-3 * stale_ms)
+}
+
+/// The fixtures of the tool must be able to do what they promise.
+fn check_fixtures(t: &Table<'_>, cell: &Cell, operator: &CellOperator) -> Result<()> {
+    let fixtures = cell.guidance.fixtures.iter().enumerate();
+    for (index, fixture) in fixtures.filter(|(index, f)| operator.may_open(*index, f)) {
+        let object = &cell.objects[fixture.protects.0];
+        let refused = |why: &str, hint: &str| {
+            let what = format!("fixture \"{}\" protects \"{}\", {why}", fixture.name, object.name);
+            Err(Diagnostic::new(&cell.file, fixture.line, what).hint(hint))
+        };
+        if cell.moving_objects.iter().any(|m| m.object == fixture.protects) {
+            return refused("which moves; the shield would not", "an object that stands still");
+        }
+        if !operator.switches.is_ever_off(FixtureRef::Shield(index), fixture.active) {
+            continue;
+        }
+        // While it is off, the triangles of the object alone keep the tool out.
+        let is_exact = match &object.shape {
+            Shape::Mesh(mesh) => ProtectedSurface::new(mesh.clone(), Pose::IDENTITY).is_ok(),
+            shape => matches!(shape, Shape::Cuboid(_) | Shape::Hull(_)),
+        };
+        if !is_exact {
+            return refused("which is no box and no closed mesh", "such an object, or a fixture that is always on");
+        }
+        if operator.settings.least_gap_m < CHORD_M {
+            let what = format!("`{}`: `gap` is too small for a fixture that is switched", t.name);
+            return Err(t.error(what).hint(format!("gap = {}", cell.units.in_file_units(5.0 * CHORD_M))));
+        }
+    }
+    one_guide_at_a_time(t, cell, operator)
+}
+
+fn one_guide_at_a_time(t: &Table<'_>, cell: &Cell, operator: &CellOperator) -> Result<()> {
+    let guides = cell.guidance.guides.iter().enumerate().filter(|(_, g)| g.tool == operator.tool);
+    for t_s in operator.switches.times() {
+        let is_on = |index: usize, active| operator.switches.is_on(FixtureRef::Guide(index), active, t_s);
+        let mut on = guides.clone().filter(|(index, g)| is_on(*index, g.active)).map(|(_, g)| g.name.as_str());
+        if let (Some(one), Some(other)) = (on.next(), on.next()) {
+            let what = format!("`{}`: at {t_s} s the guides \"{one}\" and \"{other}\" are both on", t.name);
+            return Err(t.error(what).hint("one guide at a time"));
+        }
+    }
+    Ok(())
 }
 
 /// The fixtures of a tool, with their names.

@@ -44,7 +44,7 @@ pub(super) struct PoseRow {
     pub others: Vec<Option<f64>>,
 }
 
-/// Reads the file that a value names, which may have other columns too.
+/// Reads the file that a value names, which may have other columns too, of 0 and 1.
 pub(super) fn read_with(v: &Value<'_>, units: Units, others: &[&str]) -> Result<(NumberTable, Vec<PoseRow>)> {
     let table = models::number_table(v)?;
     let columns = Columns::of(&table, units, others)?;
@@ -52,6 +52,11 @@ pub(super) fn read_with(v: &Value<'_>, units: Units, others: &[&str]) -> Result<
     let at: Vec<Option<usize>> = others.iter().map(|name| table.columns.iter().position(|c| c == name)).collect();
     let row = |row: TimedRow| {
         let pose = columns.pose(&table, row.line, &row.values)?;
+        let odd = at.iter().flatten().find(|c| !matches!(row.values[**c], 0.0 | 1.0));
+        if let Some(column) = odd {
+            let what = format!("has {} in the column `{}`", row.values[*column], table.columns[*column]);
+            return Err(Diagnostic::new(&table.file, row.line, what).hint("0 or 1"));
+        }
         Ok(PoseRow { t_s: row.t_s, pose, others: at.iter().map(|c| c.map(|c| row.values[c])).collect() })
     };
     let rows = table.timed(&all)?.into_iter().map(row).collect::<Result<Vec<_>>>()?;

@@ -20,7 +20,8 @@ SHORTEST_M = 1e-6
 
 
 class Arm:
-    def __init__(self, urdf, base, tool):
+    def __init__(self, urdf, base, tool, joints):
+        self.joints, self.dof = joints, 1 + max(joint[1] for joint in joints)
         self.model = pin.buildModelFromUrdf(urdf)
         self.shapes = pin.buildGeomFromUrdf(self.model, urdf, pin.GeometryType.COLLISION, package_dirs=[str(Path(urdf).parent)])
         self.data, self.placed = self.model.createData(), self.shapes.createData()
@@ -33,8 +34,17 @@ class Arm:
         for shape in self.geometry:
             shape.computeLocalAABB()
 
+    def configuration(self, values):
+        """Pinocchio's configuration: it has coupled joints too, and the cosine and the sine of joints without limits."""
+        q = np.empty(self.model.nq)
+        for name, index, multiplier, offset in self.joints:
+            joint, value = self.model.getJointId(name), multiplier * values[index] + offset
+            at = self.model.idx_qs[joint]
+            q[at:at + self.model.nqs[joint]] = value if self.model.nqs[joint] == 1 else [np.cos(value), np.sin(value)]
+        return q
+
     def place(self, q):
-        pin.forwardKinematics(self.model, self.data, q)
+        pin.forwardKinematics(self.model, self.data, self.configuration(q))
         pin.updateFramePlacements(self.model, self.data)
         pin.updateGeometryPlacements(self.model, self.data, self.shapes, self.placed)
         flange = self.data.oMf[self.frame]
@@ -43,7 +53,7 @@ class Arm:
 
 class Cell:
     def __init__(self, setup):
-        self.arms = [Arm(arm["urdf"], arm["base"], arm["tool"]) for arm in setup["arms"]]
+        self.arms = [Arm(arm["urdf"], arm["base"], arm["tool"], arm["joints"]) for arm in setup["arms"]]
         self.bar = coal.Box(*(2.0 * np.array(setup["bar_half_extents"])))
         self.bar.computeLocalAABB()
         self.reach_m = setup["reach_m"]
@@ -128,7 +138,7 @@ def main():
     contacts, steps, queries, least_m = 0, 0, 0, np.inf
     for file in sorted(folder.glob("motion_*.csv")):
         cell = Cell(json.loads((folder / file.name.replace("motion_", "cell_")).with_suffix(".json").read_text()))
-        rows = read(file, [arm.model.nq for arm in cell.arms])
+        rows = read(file, [arm.dof for arm in cell.arms])
         found = check(cell, rows)
         queries, least_m = queries + cell.queries, min(least_m, cell.least_m)
         steps += len(rows)
