@@ -79,7 +79,8 @@ impl CellOperator {
         if let Some(forces) = forces.map_err(|e| refused(e.to_string()))? {
             arm.set_forces(forces);
         }
-        Ok(OperatedArm { arm, surfaces: owners, wanted: (on.clone(), false), on })
+        let refused = vec![false; cell.guidance.fixtures.len()];
+        Ok(OperatedArm { arm, surfaces: owners, wanted: on.clone(), on, refused })
     }
 
     /// The surface of the tool in the frame of its point. If a shield may let its link into an object, everything on that

@@ -64,8 +64,10 @@ pub struct OperatedArm<'s> {
     pub arm: GuidedArm<'s>,
     pub(crate) surfaces: Vec<SurfaceOwner>,
     pub(crate) on: FixturesOn,
-    /// Those that the operator wants to be on, and whether that was refused.
-    pub(crate) wanted: (FixturesOn, bool),
+    /// Those that the operator wants to be on.
+    pub(crate) wanted: FixturesOn,
+    /// Per fixture that protects, whether its change was refused last.
+    pub(crate) refused: Vec<bool>,
 }
 
 /// What became of a switch of fixtures.
@@ -92,30 +94,27 @@ impl OperatedArm<'_> {
         if operator.switches.is_empty() {
             return;
         }
-        self.wanted.0.set(cell, operator, t_s);
+        self.wanted.set(cell, operator, t_s);
         self.switch_guide(cell, &mut report);
-        let Self { arm, surfaces, on, wanted: (wanted, was_refused) } = self;
-        if wanted.shields == on.shields {
-            *was_refused = false;
-            return;
-        }
-        let is_refused = arm.switch(|index| wanted.keep_off(cell, surfaces[index])).is_err();
-        for ((fixture, before), after) in cell.guidance.fixtures.iter().zip(&mut on.shields).zip(&wanted.shields) {
-            match (*before == *after, is_refused) {
-                (true, _) => {}
-                (false, true) if *was_refused => {}
-                (false, true) => report(&fixture.name, FixtureChange::Refused),
-                (false, false) => {
-                    report(&fixture.name, if *after { FixtureChange::On } else { FixtureChange::Off });
-                    *before = *after;
-                }
+        let Self { arm, surfaces, on, wanted, refused } = self;
+        let changes = wanted.shields != on.shields;
+        let is_refused = changes && arm.switch(|index| wanted.keep_off(cell, surfaces[index])).is_err();
+        for (index, fixture) in cell.guidance.fixtures.iter().enumerate() {
+            let (before, after) = (on.shields[index], wanted.shields[index]);
+            let was_refused = std::mem::replace(&mut refused[index], is_refused && before != after);
+            if refused[index] && !was_refused {
+                report(&fixture.name, FixtureChange::Refused);
+            } else if !is_refused && before != after {
+                report(&fixture.name, if after { FixtureChange::On } else { FixtureChange::Off });
             }
         }
-        *was_refused = is_refused;
+        if !is_refused {
+            on.shields.copy_from_slice(&wanted.shields);
+        }
     }
 
     fn switch_guide(&mut self, cell: &Cell, report: &mut impl FnMut(&str, FixtureChange)) {
-        let (guides, wanted) = (&cell.guidance.guides, self.wanted.0.guide);
+        let (guides, wanted) = (&cell.guidance.guides, self.wanted.guide);
         let before = std::mem::replace(&mut self.on.guide, wanted);
         if before == wanted {
             return;

@@ -253,7 +253,7 @@ fn fixtures_that_would_not_protect_while_they_are_off_are_refused() {
             column("fixture.hole", ["1", "-1"]),
             &["hand.csv:3", "has -1 in the column `fixture.hole`", "0 or 1"][..],
         ),
-        (cell.replace(block, "shape = \"sphere\"\nradius = 30"), switched.clone(), &["no box and no closed mesh"]),
+        (cell.replace(block, "shape = \"sphere\"\nradius = 30"), switched.clone(), &["not a box or a closed mesh"]),
         (
             cell.replace(block, &format!("{block}\nmotion = {{ via = [[900, 0, 1210]], speed = 10 }}")),
             switched.clone(),

@@ -26,7 +26,7 @@ pub(super) struct NearestDirections<'m> {
 }
 
 impl<'m> NearestDirections<'m> {
-    /// Computes the rays; `normals` are those of the triangles.
+    /// Computes the rays from the normals of the triangles.
     pub fn new(mesh: &'m TriMesh, faces: &'m VertexFaces, normals: &'m [Option<Vec3>]) -> Self {
         let mut directions = Self { mesh, faces, normals, first: vec![0], rays: Vec::new() };
         for v in 0..mesh.vertices().len() as u32 {

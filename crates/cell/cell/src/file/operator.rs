@@ -120,7 +120,7 @@ fn check_fixtures(t: &Table<'_>, cell: &Cell, operator: &CellOperator) -> Result
             shape => matches!(shape, Shape::Cuboid(_) | Shape::Hull(_)),
         };
         if !is_exact {
-            return refused("which is no box and no closed mesh", "such an object, or a fixture that is always on");
+            return refused("which is not a box or a closed mesh", "such an object, or a fixture that is always on");
         }
         if operator.settings.least_gap_m < CHORD_M {
             let what = format!("`{}`: `gap` is too small for a fixture that is switched", t.name);

@@ -126,7 +126,7 @@ impl Pair {
         Self::of(&vec![&arm; count], distance_m, block).unwrap()
     }
 
-    /// These arms; the distance (m) and the block are those of an arm of size 1. `None` if they cannot start like this.
+    /// These arms; the distance (m) is for an arm of size 1. `None` if they cannot start like this.
     pub fn of(arms: &[&ArmModel], distance_m: f64, block: Option<(Vec3, Vec3)>) -> Option<Self> {
         let size = arms.iter().map(|arm| arm.size).fold(f64::INFINITY, f64::min);
         let mut builder = Scene::builder();
@@ -162,11 +162,6 @@ impl Pair {
             all.push(arm.raised()?);
         }
         Some(Self { scene, members, start: all, size })
-    }
-
-    /// Like [`Self::new`], but only the first arm can grasp the bar.
-    pub fn alone(count: usize, distance_m: f64) -> Self {
-        Self::new(count, distance_m).with_one_hand()
     }
 
     /// The same cell, in which only the first arm can grasp the bar.

@@ -19,7 +19,7 @@ pub struct SweepOptions {
     /// resolution is never finer than the rounding of poses of that size (about 1e-14 of the largest coordinate). 0,
     /// negative numbers and NaN select that finest resolution.
     pub tolerance_m: f64,
-    /// Leaves out pairs that do not move relative to each other: what rests in contact is no hit then.
+    /// Leaves out pairs that do not move relative to each other: what rests in contact is not reported then.
     pub moving_only: bool,
     /// Largest number of distances of exact shapes. Beyond it, the answer is a hit that is not [`SweepHit::certain`].
     pub max_steps: u32,
