@@ -48,6 +48,7 @@ mod navigation_step;
 mod navigator_settings;
 mod protected_surface;
 mod shield;
+mod surface_clearance;
 mod surface_navigator;
 
 pub use constraint_projection::{Contradiction, LinearConstraint, project_onto_constraints};

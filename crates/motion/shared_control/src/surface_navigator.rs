@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use elbowroom_proximity::advanced::{LocalMinimum, NormalConeHierarchy, for_each_local_minimum, mesh_separation_with};
-use elbowroom_proximity::{DistanceSettings, Separation, TriMesh, WarmStart, Workspace};
+use elbowroom_proximity::{DistanceSettings, Separation, TriMesh, Workspace};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::constraint_set::ConstraintSet;
 use crate::navigation_step::{Limit, NavigationStep};
+use crate::surface_clearance::{SurfaceClearance, Tool};
 use crate::{LinearConstraint, NavigatorError, NavigatorSettings, ProtectedSurface, project_onto_constraints};
 
 /// Most distance queries per step and surface in the proof of a step that is longer than the gap.
@@ -24,8 +25,8 @@ pub struct SurfaceNavigator {
     /// Largest distance of a point of the tool from the tool point, metres.
     tool_reach_m: f64,
     surfaces: Vec<ProtectedSurface>,
-    /// Where the last distance to each surface was found.
-    warm_starts: Vec<WarmStart>,
+    /// What is known of the distance to each surface.
+    clearances: Vec<SurfaceClearance>,
     settings: NavigatorSettings,
     tool_in_world: Pose,
     /// Velocity of the tool point at override 1, m/s.
@@ -65,7 +66,7 @@ impl SurfaceNavigator {
         let mut navigator = Self {
             tool: NormalConeHierarchy::new(tool),
             tool_reach_m,
-            warm_starts: vec![WarmStart::default(); surfaces.len()],
+            clearances: vec![SurfaceClearance::default(); surfaces.len()],
             surfaces,
             settings,
             tool_in_world,
@@ -321,17 +322,9 @@ impl SurfaceNavigator {
 
     /// The same of one surface.
     fn distance_from(&mut self, surface: usize, tool_in_world: Pose, limit_m: f64) -> f64 {
-        let (protected, warm_start) = (&self.surfaces[surface], &mut self.warm_starts[surface]);
-        let settings = DistanceSettings { limit: limit_m, warm_start: Some(warm_start), ..Default::default() };
-        let found = mesh_separation_with(
-            self.tool.mesh(),
-            &tool_in_world,
-            protected.surface.mesh(),
-            &protected.in_world,
-            settings,
-            &mut self.workspace,
-        );
-        found.map_or(limit_m, |s| s.lower_bound.min(limit_m))
+        let tool = Tool { mesh: self.tool.mesh(), reach_m: self.tool_reach_m };
+        let limits_m = (limit_m, self.settings.gap_m);
+        self.clearances[surface].at(&tool, &self.surfaces[surface], tool_in_world, limits_m, &mut self.workspace)
     }
 
     /// Turns the tool about its point as far as the slack proves.

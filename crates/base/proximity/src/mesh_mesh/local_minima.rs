@@ -3,12 +3,14 @@
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::cutoff::Cutoff;
-use super::leaf_kernel::{LeafPair, touching_pairs};
+use super::facing_kernel::facing_pairs;
+use super::leaf_kernel::LeafPair;
 use super::leaf_pairs::visit_leaf_pairs;
 use super::mesh_pair::MeshPair;
 use super::node_pair::NodePair;
-use super::normal_cones::{FacingTest, NormalConeHierarchy};
+use super::normal_cones::NormalConeHierarchy;
 use super::relative_placement::{RelativePlacement, spheres_farther_than};
+use super::surface_patch::FacingTest;
 use super::triangle_batch::{TriangleBatch, robust_closest_points};
 use super::triangle_kernel::BATCH;
 use super::workspace::{QueryStats, Workspace};
@@ -125,12 +127,11 @@ impl LocalMinimumSearch<'_> {
             patch.may_face(self.b.of_node(pair.height_b, pair.b), &test)
         };
         visit_leaf_pairs(meshes, &cutoff, stack, stats, may_face, |pair, stats| {
-            let near = touching_pairs(meshes, LeafPair { a: pair.a as usize, b: pair.b as usize }, &cutoff);
-            for (i, j) in near.lanes() {
+            let leaves = LeafPair { a: pair.a as usize, b: pair.b as usize };
+            let patches = (self.a.of_leaf(leaves.a), self.b.of_leaf(leaves.b));
+            let facing = facing_pairs(meshes, leaves, patches, self.b.of_node(0, pair.b), &test);
+            for (i, j) in facing.lanes() {
                 let (slot_a, slot_b) = (pair.a * LEAF_SIZE as u32 + i, pair.b * LEAF_SIZE as u32 + j);
-                if !self.a.of_slot(slot_a).may_face(self.b.of_slot(slot_b), &test) {
-                    continue;
-                }
                 slots[batch.len()] = (slot_a, slot_b);
                 if batch.push(meshes.a, slot_a, meshes.b, slot_b) {
                     self.measure(batch, &slots, stats, found);
@@ -179,7 +180,7 @@ impl LocalMinimumSearch<'_> {
             return true;
         }
         let Some(toward_b) = apart.try_normalize() else { return true };
-        self.a.of_slot(slot_a).cone.may_contain(toward_b)
-            && self.b.of_slot(slot_b).cone.may_contain(self.meshes.placement.direction_to_b(-toward_b))
+        self.a.may_contain(slot_a, toward_b)
+            && self.b.may_contain(slot_b, self.meshes.placement.direction_to_b(-toward_b))
     }
 }

@@ -12,6 +12,7 @@ mod cutoff;
 mod distance;
 #[cfg(test)]
 mod f32_bounds_tests;
+mod facing_kernel;
 mod gilbert;
 mod landmark_descent;
 mod landmarks;
@@ -27,6 +28,7 @@ mod node_kernel;
 mod node_pair;
 mod normal_cones;
 mod relative_placement;
+mod surface_patch;
 mod triangle_batch;
 mod triangle_kernel;
 mod vertex_faces;
