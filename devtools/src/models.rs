@@ -43,6 +43,7 @@ pub fn check(root: &Path) -> Result<(), String> {
 
 fn files() -> Result<Vec<File>, String> {
     let mut files = robots::tools::files()?;
+    files.extend(robots::work_pieces::files()?);
     for robot in robots::all() {
         files.extend(robot.files()?);
     }

@@ -11,6 +11,7 @@ mod srdf;
 pub mod tools;
 mod tree;
 mod urdf;
+pub mod work_pieces;
 
 pub use model::File;
 use model::{Form, Robot};

@@ -10,7 +10,44 @@ pub fn files() -> Result<Vec<File>, String> {
         mesh.check().map_err(|e| format!("{name}: {e}"))?;
         Ok((format!("tools/{name}.stl"), binary_stl(&mesh)))
     };
-    Ok(vec![named("torch", torch())?, named("gripper", gripper())?])
+    Ok(vec![
+        named("torch", torch())?,
+        named("gripper", gripper())?,
+        named("mill", mill())?,
+        named("ball_probe", ball_probe())?,
+    ])
+}
+
+/// A mill of 3 mm with a round end in a drive of 24 mm; its tip is at z = 0.140 m.
+fn mill() -> Mesh {
+    let mut mesh = Mesh::new();
+    mesh.add(&upright([0.0; 3]), &lathe(&[[0.019, 0.0], [0.020, 0.001], [0.020, 0.010], [0.018, 0.012]], 28));
+    mesh.add(&upright([0.0; 3]), &lathe(&[[0.012, 0.009], [0.012, 0.080], [0.006, 0.092], [0.005, 0.094]], 24));
+    let mut cutter = vec![[0.0015, 0.090]];
+    cutter.extend(round_end(0.0015, 0.140, 5));
+    mesh.add(&upright([0.0; 3]), &lathe(&cutter, 14));
+    mesh
+}
+
+/// A ball of 16 mm on a stem of 8 mm; it ends at z = 0.120 m.
+fn ball_probe() -> Mesh {
+    let mut mesh = Mesh::new();
+    mesh.add(&upright([0.0; 3]), &lathe(&[[0.019, 0.0], [0.020, 0.001], [0.020, 0.010], [0.018, 0.012]], 28));
+    mesh.add(&upright([0.0; 3]), &lathe(&[[0.004, 0.009], [0.004, 0.110]], 20));
+    let mut ball: Vec<_> = round_end(0.008, 0.120, 9).iter().rev().map(|&[r, z]| [r, 0.224 - z]).collect();
+    ball.pop();
+    ball.extend(round_end(0.008, 0.120, 9));
+    mesh.add(&upright([0.0; 3]), &lathe(&ball, 36));
+    mesh
+}
+
+/// The profile of a half ball that ends nearly at `z`, from its equator on.
+fn round_end(radius: f64, z: f64, steps: usize) -> Vec<[f64; 2]> {
+    let at = |k: usize| {
+        let (sin, cos) = (std::f64::consts::FRAC_PI_2 * k as f64 / (steps as f64 + 0.5)).sin_cos();
+        [radius * cos, z - radius + radius * sin]
+    };
+    (0..=steps).map(at).collect()
 }
 
 /// A straight welding torch for an arm with a hollow wrist: 80 × 80 × 250 mm, its contact tip at z = 0.250 m.

@@ -86,7 +86,7 @@ pub use model_limits::model_limits;
 pub use moving_object::{Drive, Encoder, MovingObject, ObjectMotion, ObjectPath, PathRepeat, Travel};
 pub use object_tables::{ObjectTables, object_tables};
 pub use operated_arm::{FixtureChange, OperatedArm};
-pub use operator::{CellOperator, OperatorInput, OperatorRow, OperatorStream};
+pub use operator::{CellOperator, Interpolation, OperatorInput, OperatorRow, OperatorStream};
 pub use pair_file::{PairCounts, PairFile};
 pub use payload::Payload;
 pub use poses::{PoseRate, PoseTrack};

@@ -53,7 +53,17 @@ pub struct OperatorRow {
     pub clutch: bool,
 }
 
-/// A recorded or generated stream of desired poses; a row holds until the next one.
+/// What the hand does between two rows of a stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Interpolation {
+    /// It stays at the first.
+    #[default]
+    Hold,
+    /// It moves straight to the second, and turns evenly.
+    Linear,
+}
+
+/// A recorded or generated stream of desired poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OperatorStream {
     /// The file.
@@ -62,16 +72,18 @@ pub struct OperatorStream {
     pub stale_s: f64,
     /// Times (s, increasing) and desired poses of the tool point; `None` while the operator is not enabled.
     rows: Vec<(f64, Option<Pose>)>,
+    interpolation: Interpolation,
 }
 
 impl OperatorStream {
-    /// The desired poses of these rows, in order of time.
+    /// The desired poses of these rows, in order of time; a row holds until the next.
     ///
     /// Motions of the hand count `scale` times, from the first row on and again from each row at which the clutch closes:
     /// while it is open, the desired pose stays.
     pub fn new(file: PathBuf, rows: &[OperatorRow], scale: f64, stale_s: f64) -> Self {
         let mut wanted = Vec::with_capacity(rows.len());
-        let Some(first) = rows.first() else { return Self { file, stale_s, rows: wanted } };
+        let interpolation = Interpolation::Hold;
+        let Some(first) = rows.first() else { return Self { file, stale_s, rows: wanted, interpolation } };
         // The hand and the tool at the last engagement.
         let (mut hand, mut tool) = (first.pose, first.pose);
         let (mut last, mut was_open) = (first.pose, first.clutch);
@@ -89,7 +101,13 @@ impl OperatorStream {
             was_open = row.clutch;
             wanted.push((row.t_s, row.enabled.then_some(last)));
         }
-        Self { file, stale_s, rows: wanted }
+        Self { file, stale_s, rows: wanted, interpolation }
+    }
+
+    /// The stream with another motion between its rows.
+    #[must_use]
+    pub fn interpolated(self, interpolation: Interpolation) -> Self {
+        Self { interpolation, ..self }
     }
 
     /// Largest motion of the desired point from one row to the next, metres, up to a limit beyond which it is none.
@@ -115,7 +133,14 @@ impl OperatorStream {
         if t_s - since_s > self.stale_s {
             return if next == self.rows.len() { OperatorInput::Over } else { OperatorInput::Stale };
         }
-        wanted.map_or(OperatorInput::Disabled, OperatorInput::Pose)
+        let Some(wanted) = *wanted else { return OperatorInput::Disabled };
+        match (self.interpolation, self.rows.get(next)) {
+            // A row that comes too late is not foreseen: until then the last one holds.
+            (Interpolation::Linear, Some(&(until_s, Some(to)))) if until_s - since_s <= self.stale_s => {
+                OperatorInput::Pose(wanted.interpolate(&to, (t_s - since_s) / (until_s - since_s)))
+            }
+            _ => OperatorInput::Pose(wanted),
+        }
     }
 }
 
@@ -148,6 +173,25 @@ mod tests {
         let found = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0].map(|t| x(stream.at(t)));
         for (found, expected) in found.into_iter().zip([1.0, 1.1, 1.1, 1.1, 1.1, 1.15]) {
             assert!((found - expected).abs() < 1e-12, "{found} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn between_rows_a_hand_holds_or_moves_but_not_over_a_gap_or_where_it_lets_go() {
+        let rows = [
+            row(0.0, 0.0, false),
+            row(0.1, 0.1, false),
+            row(0.9, 0.2, false),
+            row(1.0, 0.3, false),
+            OperatorRow { enabled: false, ..row(1.1, 0.4, false) },
+        ];
+        let held = OperatorStream::new("hand.csv".into(), &rows, 1.0, 0.5);
+        let moved = held.clone().interpolated(Interpolation::Linear);
+        for (t_s, held_x, moved_x) in
+            [(0.0, 0.0, 0.0), (0.05, 0.0, 0.05), (0.1, 0.1, 0.1), (0.4, 0.1, 0.1), (0.95, 0.2, 0.25), (1.05, 0.3, 0.3)]
+        {
+            assert_eq!(x(held.at(t_s)), held_x, "at {t_s} s");
+            assert!((x(moved.at(t_s)) - moved_x).abs() < 1e-12, "at {t_s} s");
         }
     }
 

@@ -90,6 +90,32 @@ fn a_tool_pushed_into_a_block_glides_along_it_and_leaves_it() {
     );
 }
 
+/// The monitor judges how the robot brakes by where the hand leads next, not by where the tool has arrived.
+#[test]
+fn a_hand_that_turns_the_tool_in_every_tick_is_followed_without_a_fault() {
+    let dir = tempfile::tempdir().unwrap();
+    let cell = CELL.replace("[robot.arm]", "[monitor]\nstopping_distance = true\n[robot.arm]");
+    let cell = cell.replace("stream = \"hand.csv\"", "stream = \"hand.csv\"\ninterpolation = \"linear\"");
+    write(dir.path(), &cell, |_| [1104.2, 0.0, 1358.8], 2.0);
+    let text = std::fs::read_to_string(dir.path().join("hand.csv")).unwrap();
+    let row = |(k, line): (usize, &str)| {
+        // Turns about the world's y axis by 0.8 rad/s, from 2·atan2(0.462, 0.887) about the axis between x and z on.
+        let half = 0.5 * 0.8 * 0.02 * k.saturating_sub(1) as f64;
+        let (x, z) = (0.887_010_833_178_222, 0.461_748_613_235_033_86);
+        let (c, s) = (half.cos(), half.sin());
+        let turn = format!("{},0,{},0", c * x + s * z, c * z - s * x);
+        line.replace(TURN, &turn)
+    };
+    let turned: Vec<String> = text.lines().enumerate().map(row).collect();
+    std::fs::write(dir.path().join("hand.csv"), turned.join("\n")).unwrap();
+    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0).json();
+    let events = std::fs::read_to_string(dir.path().join("out/events.csv")).unwrap();
+    assert!(!events.contains("fault") && !events.contains("hold"), "{events}");
+    // In the end the tool would be turned into the wrist: the arm stands, and no monitor takes it for frozen.
+    assert!(events.contains("refuse"), "{events}");
+    assert!(answer["operators"][0]["free_s"].as_f64().unwrap() > 1.7, "{answer}");
+}
+
 #[test]
 fn a_stale_or_disabled_hand_stops_the_arm_smoothly() {
     let dir = tempfile::tempdir().unwrap();
@@ -288,6 +314,11 @@ fn operators_that_contradict_the_cell_are_refused_with_their_line() {
         ("box = { at = [0, 0, 50], size = [8, 8, 100] }", "", &["has no solid"]),
         ("stream = \"hand.csv\"", "stream = \"hands.csv\"", &["cell.toml:16", "hands.csv"]),
         ("stream = \"hand.csv\"", "stream = \"hand.csv\"\nscale = 0", &["cell.toml:17", "scale"]),
+        (
+            "stream = \"hand.csv\"",
+            "stream = \"hand.csv\"\ninterpolation = \"cubic\"",
+            &["cell.toml:17", "\"cubic\"", "linear"],
+        ),
         ("stream = \"hand.csv\"", "stream = \"hand.csv\"\nstale_ms = 5000", &["cell.toml:17", "at most 1000"]),
         (
             "[operator.hand]",

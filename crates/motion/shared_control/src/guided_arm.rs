@@ -190,7 +190,8 @@ impl<'s> GuidedArm<'s> {
     }
 
     /// Writes the joint velocities (rad/s or m/s) with which [`step`](Self::step) would follow, and moves nothing; 0 if the
-    /// arm cannot.
+    /// arm cannot. For a monitor, `desired` is the pose of the *next* step: that of the last one is where the tool is, if it
+    /// keeps up with the hand.
     pub fn intent(&mut self, desired: Option<&Pose>, dt_s: f64, velocities: &mut [f64]) {
         let desired = self.guided(desired);
         let mut forces = self.forces.take();
@@ -214,11 +215,20 @@ impl<'s> GuidedArm<'s> {
         };
         self.forces = forces;
         self.navigator.undo();
-        let is_reached = self.solve(&tool_in_world);
+        // An arm that stood was perhaps refused, and would be again: a monitor must not expect it to move.
+        let stood = self.before == self.state.q(self.robot);
+        let is_possible = (!stood || self.can_begin(&tool_in_world, dt_s)) && self.solve(&tool_in_world);
         let q = self.state.q(self.robot);
         for ((velocity, to), from) in velocities.iter_mut().zip(&self.next).zip(q) {
-            *velocity = if is_reached { (to - from) / dt_s } else { 0.0 };
+            *velocity = if is_possible { (to - from) / dt_s } else { 0.0 };
         }
+    }
+
+    /// True if the arm can take a step towards that pose of the tool, however short.
+    fn can_begin(&mut self, tool_in_world: &Pose, dt_s: f64) -> bool {
+        let from = self.navigator.tool_in_world();
+        let shares = std::iter::successors(Some(1.0), |share| Some(0.5 * share));
+        shares.take(HALVINGS + 1).any(|share| self.examine(&from.interpolate(tool_in_world, share), dt_s).is_ok())
     }
 
     /// The desired pose within the guide.
@@ -309,6 +319,12 @@ impl<'s> GuidedArm<'s> {
 
     /// Moves the joints so that the tool is there, if the whole motion is free.
     fn follow(&mut self, tool_in_world: &Pose, dt_s: f64) -> Result<(), ArmLimit> {
+        self.examine(tool_in_world, dt_s)?;
+        self.state.set_q(self.scene, self.robot, &self.next).map_err(|_| ArmLimit::Unproven)
+    }
+
+    /// Finds the joint values with which the tool is there, if the whole motion is free.
+    fn examine(&mut self, tool_in_world: &Pose, dt_s: f64) -> Result<(), ArmLimit> {
         if !self.solve(tool_in_world) {
             return Err(ArmLimit::Reach);
         }
@@ -323,11 +339,10 @@ impl<'s> GuidedArm<'s> {
         let moves = [SweepMove::Robot { robot: *robot, to: next }];
         let options = SweepOptions { tolerance_m: 1e-5, moving_only: true, ..SweepOptions::default() };
         match checker.sweep(state, &moves, &options) {
-            Ok(None) => {}
-            Ok(Some(hit)) => return Err(ArmLimit::Contact(hit.a, hit.b)),
-            Err(_) => return Err(ArmLimit::Unproven),
+            Ok(None) => Ok(()),
+            Ok(Some(hit)) => Err(ArmLimit::Contact(hit.a, hit.b)),
+            Err(_) => Err(ArmLimit::Unproven),
         }
-        state.set_q(self.scene, *robot, next).map_err(|_| ArmLimit::Unproven)
     }
 
     /// Finds the joint values near the present ones that hold the tool there.

@@ -122,6 +122,9 @@ fn operator(random: &mut Random) -> String {
     if random.percent(20) {
         _ = writeln!(keys, "scale = {}", random.scaled(0.2, 3.0));
     }
+    if random.percent(40) {
+        keys += "interpolation = \"linear\"\n";
+    }
     keys + "stale_ms = 150\n"
 }
 

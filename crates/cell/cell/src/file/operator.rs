@@ -13,7 +13,7 @@ use super::poses::read_with;
 use super::schema::{OPERATOR, names};
 use super::tools::with_exchanged_tools;
 use crate::guided_arm::CHORD_M;
-use crate::operator::{CellOperator, OperatorRow, OperatorStream};
+use crate::operator::{CellOperator, Interpolation, OperatorRow, OperatorStream};
 use crate::{Cell, FixtureRef, FixtureSwitches, FixtureTool, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -63,6 +63,8 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
     let fixtures = fixtures_of(cell, tool);
     let columns: Vec<String> = fixtures.iter().map(|(_, name)| format!("fixture.{name}")).collect();
     let (stream, states) = stream(t, units, (scale, stale_s), &columns)?;
+    let interpolations = [("hold", Interpolation::Hold), ("linear", Interpolation::Linear)];
+    let interpolation = t.get("interpolation").map_or(Ok(Interpolation::Hold), |v| v.word(&interpolations))?;
     let mut switches = FixtureSwitches::default();
     for ((fixture, _), states) in fixtures.into_iter().zip(states) {
         if let Some(states) = states {
@@ -74,7 +76,7 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
         line: t.line,
         robot,
         tool,
-        stream,
+        stream: stream.interpolated(interpolation),
         switches,
         settings: NavigatorSettings {
             gap_m,

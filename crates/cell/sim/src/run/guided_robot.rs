@@ -6,6 +6,7 @@ use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneError, SceneState};
+use elbowroom_spatial::Pose;
 
 use crate::recording::{ForceSample, GuidanceSample, GuidanceState, GuidanceTrack, RunEvent};
 
@@ -83,13 +84,15 @@ impl<'s> GuidedRobot<'s> {
         let before = arm.tool_in_world();
         self.velocity.copy_from_slice(arm.q());
         let input = self.operator.stream.at(t_s);
-        let wanted = if let OperatorInput::Pose(pose) = input { Some(pose) } else { None };
+        let wanted = pose_of(input);
         let step = arm.step(wanted.as_ref(), tick_s, allowed);
         for (velocity, q) in self.velocity.iter_mut().zip(arm.q()) {
             *velocity = (q - *velocity) / tick_s;
         }
-        // What the hand wants, also while the override lets nothing move: it may lead away from a region.
-        arm.intent(wanted.as_ref(), tick_s, &mut self.intent);
+        // Where the hand leads in the next tick, also while the override lets nothing move: it may lead away from a region.
+        // Where it leads now, a tool that keeps up with it has arrived.
+        let next = pose_of(self.operator.stream.at(t_s + tick_s));
+        arm.intent(next.as_ref(), tick_s, &mut self.intent);
         let tool_in_world = arm.tool_in_world();
         let is_at_rest = self.velocity.iter().all(|v| *v == 0.0);
         self.is_over = input == OperatorInput::Over && is_at_rest;
@@ -112,6 +115,10 @@ impl<'s> GuidedRobot<'s> {
         }
         Ok(())
     }
+}
+
+fn pose_of(input: OperatorInput) -> Option<Pose> {
+    if let OperatorInput::Pose(pose) = input { Some(pose) } else { None }
 }
 
 fn of_fixture(change: FixtureChange) -> RunEvent {

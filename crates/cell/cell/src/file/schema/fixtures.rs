@@ -51,7 +51,8 @@ pub(in crate::file) const FORCE: &[Key] = &[
 pub(in crate::file) const OPERATOR: &[Key] = &[
     key("robot", "name", "required", "the guided robot; it has no program and no avoidance"),
     key("tool", "name", "the only one, or the one that is mounted", "the tool whose point is guided; it needs a solid"),
-    key("stream", "path", "required", "CSV of desired poses of the tool point in the world: `t_s,x,y,z,qx,qy,qz,qw`, and `enable`, `clutch`, `fixture.NAME` (0 or 1) if wanted; a row holds until the next"),
+    key("stream", "path", "required", "CSV of desired poses of the tool point in the world: `t_s,x,y,z,qx,qy,qz,qw`, and `enable`, `clutch`, `fixture.NAME` (0 or 1) if wanted"),
+    key("interpolation", "`\"hold\"` `\"linear\"`", "`\"hold\"`", "between two rows the hand stays at the first, or moves evenly to the second"),
     key("scale", "0.001 to 100", "1", "motions of the hand count so many times, from the first row on and from where the clutch closes"),
     key("gap", "length", "0.5 mm", "distance at which the tool glides along surfaces; half of it is never undercut"),
     key("speed", "length per second", "250 mm/s", "largest speed of the tool point"),
