@@ -33,6 +33,15 @@ impl ChainState {
         state
     }
 
+    /// The rest pose: every joint at zero, or at the limit nearest to it; poses are computed.
+    pub fn at_rest(chain: &Chain) -> Self {
+        let mut state = Self::new(chain);
+        let bounds = chain.lower().into_iter().zip(chain.upper());
+        state.q.iter_mut().zip(bounds).for_each(|(q, (lower, upper))| *q = 0.0_f64.min(upper).max(lower));
+        chain.forward(&mut state);
+        state
+    }
+
     /// The link's frame in the root link's frame, as of the last [`Chain::forward`] or [`Chain::forward_motion`].
     ///
     /// # Panics

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use base64::Engine as _;
-use elbowroom_inspect::{Inspection, JointRow};
+use elbowroom_inspect::{Inspection, JointRow, SurfacePoint};
 use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_proximity::{Shape, tessellate::tessellate};
+use elbowroom_proximity::{Capsule, Shape, Sphere, tessellate::tessellate};
 use elbowroom_robot::{Collider, Robot};
 use elbowroom_spatial::{Aabb, Pose, Rotation, Vec3};
 
@@ -18,6 +18,8 @@ const HEIGHT: usize = 720;
 const FINE: usize = 2;
 /// Largest chord error of tessellated surfaces, m.
 const CHORD_M: f64 = 1e-3;
+/// Colour of the line to a point of a link.
+const CHAIN_COLOR: [f64; 3] = [0.95, 0.65, 0.05];
 
 /// A triangle to render, in the world.
 struct ColoredTriangle {
@@ -31,20 +33,20 @@ struct ColoredTriangle {
 ///
 /// Every joint is at zero or at the limit nearest to it, and each link has a different colour. The axis of a joint is
 /// drawn in front of everything, in the colour of the link that it moves, with a black edge; the arrow points in its
-/// positive direction.
+/// positive direction. A point of a link is drawn as the end of a line through the joints that move it.
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn write_png(inspection: &Inspection, out: impl Write) -> io::Result<()> {
-    png::write(out, WIDTH, HEIGHT, &render(&colored_triangles(inspection), -35.0, 25.0))
+pub fn write_png(inspection: &Inspection, point: Option<&SurfacePoint>, out: impl Write) -> io::Result<()> {
+    png::write(out, WIDTH, HEIGHT, &render(&colored_triangles(inspection, point), -35.0, 25.0))
 }
 
 /// Writes a page with four images of the model: oblique, from the front, from the side, from above.
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn write_page(inspection: &Inspection, mut out: impl Write) -> io::Result<()> {
-    let colored_triangles = colored_triangles(inspection);
+pub fn write_page(inspection: &Inspection, point: Option<&SurfacePoint>, mut out: impl Write) -> io::Result<()> {
+    let colored_triangles = colored_triangles(inspection, point);
     let name = escape(&inspection.name);
     writeln!(out, "<!DOCTYPE html><meta charset=\"utf-8\"><title>{name}</title><h1>{name}</h1>")?;
     for (title, turn, tilt) in
@@ -67,11 +69,12 @@ pub fn write_page(inspection: &Inspection, mut out: impl Write) -> io::Result<()
             escape(&joint)
         )?;
     }
-    writeln!(out, "<pre>{}</pre>", escape(&inspection.to_string()))?;
+    let text = point.map_or_else(|| inspection.to_string(), ToString::to_string);
+    writeln!(out, "<pre>{}</pre>", escape(&text))?;
     out.flush()
 }
 
-fn colored_triangles(inspection: &Inspection) -> Vec<ColoredTriangle> {
+fn colored_triangles(inspection: &Inspection, point: Option<&SurfacePoint>) -> Vec<ColoredTriangle> {
     let mut all = Vec::new();
     for (i, (colliders, in_world)) in shown(inspection).into_iter().enumerate() {
         let color = color(i);
@@ -82,16 +85,46 @@ fn colored_triangles(inspection: &Inspection) -> Vec<ColoredTriangle> {
             all.extend(triangles.into_iter().map(|t| ColoredTriangle { corners: corners(t), color, layer: 0 }));
         }
     }
-    add_axes(inspection, &mut all);
+    let extent = Aabb::from_points(all.iter().flat_map(|p| p.corners).filter(|p| p.is_finite())).extent();
+    let size = if extent.max_element() > 0.0 { extent.max_element() } else { 1.0 };
+    add_axes(inspection, size, &mut all);
+    if let Some(point) = point {
+        add_chain(inspection, point, size, &mut all);
+    }
     all
 }
 
-/// Adds an arrow along the axis of every moving joint.
-fn add_axes(inspection: &Inspection, all: &mut Vec<ColoredTriangle>) {
+/// Adds a line through the joints that move a point of a link, with a ball at its end.
+fn add_chain(inspection: &Inspection, point: &SurfacePoint, size: f64, all: &mut Vec<ColoredTriangle>) {
     let Some(robot) = inspection.robot() else { return };
-    let state = at_rest(robot);
-    let size = Aabb::from_points(all.iter().flat_map(|p| p.corners).filter(|p| p.is_finite())).extent();
-    let size = if size.max_element() > 0.0 { size.max_element() } else { 1.0 };
+    let Some(link) = robot.chain.link(&point.link) else { return };
+    let state = ChainState::at_rest(&robot.chain);
+    let joints = robot.chain.path(link).into_iter().map(|id| &robot.chain.joints()[id.0]);
+    let mut corners: Vec<Vec3> = vec![Vec3::ZERO];
+    corners.extend(joints.filter(|j| j.kind.moves()).map(|j| state.link_in_root(j.child).translation));
+    corners.push(Vec3::from(point.at_rest_m));
+    let radius = 0.007 * size;
+    let rods = corners.windows(2).filter_map(|ends| {
+        let along = ends[1] - ends[0];
+        let rod = Capsule { half_length: 0.5 * along.length(), radius };
+        Some((Shape::Capsule(rod), Pose::new(Rotation::from_z(along.try_normalize()?), ends[0].lerp(ends[1], 0.5))))
+    });
+    let end = (Shape::Sphere(Sphere { radius: 2.0 * radius }), Pose::from_translation(Vec3::from(point.at_rest_m)));
+    for (shape, place) in rods.chain([end]) {
+        let (vertices, triangles) = tessellate(&shape, 0.1 * radius);
+        let corners = |t: [u32; 3]| t.map(|v| place.transform_point(vertices[v as usize]));
+        all.extend(triangles.into_iter().map(|t| ColoredTriangle {
+            corners: corners(t),
+            color: CHAIN_COLOR,
+            layer: 3,
+        }));
+    }
+}
+
+/// Adds an arrow along the axis of every moving joint.
+fn add_axes(inspection: &Inspection, size: f64, all: &mut Vec<ColoredTriangle>) {
+    let Some(robot) = inspection.robot() else { return };
+    let state = ChainState::at_rest(&robot.chain);
     for (i, joint) in robot.chain.joints().iter().filter(|j| j.kind.moves()).enumerate() {
         let place = state.link_in_root(joint.child) * Pose::new(Rotation::from_z(joint.axis), Vec3::ZERO);
         // Lengths differ, so that two axes on one line are both visible. A black arrow below forms the edge.
@@ -126,17 +159,8 @@ fn shown(inspection: &Inspection) -> Vec<(&[Collider], Pose)> {
     let Some(robot) = inspection.robot() else {
         return inspection.solids().iter().map(|s| (&s.1[..], Pose::IDENTITY)).collect();
     };
-    let state = at_rest(robot);
+    let state = ChainState::at_rest(&robot.chain);
     (0..robot.colliders.len()).map(|l| (visuals_or_colliders(robot, l), state.link_in_root(LinkId(l)))).collect()
-}
-
-/// The state with every joint at zero, or at the limit nearest to it.
-fn at_rest(robot: &Robot) -> ChainState {
-    let mut state = ChainState::new(&robot.chain);
-    let bounds = robot.chain.lower().into_iter().zip(robot.chain.upper());
-    state.q.iter_mut().zip(bounds).for_each(|(q, (lower, upper))| *q = 0.0_f64.min(upper).max(lower));
-    robot.chain.forward(&mut state);
-    state
 }
 
 /// The visual meshes of a link, or its collision geometry if it has none.

@@ -18,6 +18,45 @@ impl std::str::FromStr for Numbers {
     }
 }
 
+/// A pose: x, y, z, roll, pitch, yaw.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PoseNumbers(pub(crate) [f64; 6]);
+
+impl std::str::FromStr for PoseNumbers {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let Numbers(values) = text.parse()?;
+        let count = values.len();
+        let six = values.try_into().map_err(|_| format!("has {count} numbers: write x,y,z,roll,pitch,yaw"))?;
+        Ok(Self(six))
+    }
+}
+
+/// A point of a link.
+#[derive(Debug, Clone)]
+pub(crate) struct LinkPoint {
+    pub(crate) link: String,
+    pub(crate) point: [f64; 3],
+}
+
+impl std::str::FromStr for LinkPoint {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let hint = "write LINK,x,y,z, as link_3,0.1,0,0.05";
+        // A name may contain commas.
+        let mut words = text.rsplitn(4, ',');
+        let (z, y, x, link) = (words.next(), words.next(), words.next(), words.next());
+        let (Some(x), Some(y), Some(z), Some(link)) = (x, y, z, link) else {
+            return Err(format!("needs a link and three numbers: {hint}"));
+        };
+        let Numbers(values) = format!("{x},{y},{z}").parse().map_err(|e| format!("{e}\n  {hint}"))?;
+        let point = values.try_into().map_err(|_| hint.to_owned())?;
+        Ok(Self { link: link.trim().to_owned(), point })
+    }
+}
+
 /// A configuration: joint values, or the name of a state.
 #[derive(Debug, Clone)]
 pub(crate) enum Configuration {

@@ -7,6 +7,7 @@ mod configurations;
 mod fixtures;
 mod imports;
 mod inspect;
+mod inspect_chain;
 mod live;
 mod live_control;
 mod live_ros2;

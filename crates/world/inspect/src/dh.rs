@@ -8,6 +8,9 @@ use serde::Serialize;
 
 use crate::text::shortened;
 
+/// Share of all lengths of a table below which a length of the classical table counts as 0.
+const PRECISION: f64 = 1e-6;
+
 /// A convention for Denavit-Hartenberg tables.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum DhConvention {
@@ -73,6 +76,8 @@ pub struct ClassicalDh {
     pub rows: Vec<DhRow4>,
     /// Largest difference between the product of the rows and forward kinematics; null if the table does not exist.
     pub residual: Option<f64>,
+    /// Lengths below this count as 0, m: a millionth of all lengths together.
+    pub zero_below_m: f64,
     /// Rows that need b, and why; null if the table exists.
     pub why_not: Option<String>,
 }
@@ -104,7 +109,10 @@ fn row(row: &GeneralizedRow) -> DhRow {
 }
 
 impl ClassicalDh {
-    pub(super) fn of(table: &GeneralizedTable) -> Self {
+    /// Lengths below a millionth of all lengths together are below the precision of most files, and count as 0.
+    pub(super) fn of(exact: &GeneralizedTable, chain: &Chain, tip: LinkId) -> Self {
+        let least_m = PRECISION * exact.length_m();
+        let table = exact.rounded(chain, tip, least_m);
         let with_b = table.rows.iter().enumerate().filter(|(_, r)| r.b != 0.0);
         let name = |(i, r): (usize, &GeneralizedRow)| {
             let joint = r.joint.as_ref().map_or("no joint".to_owned(), |j| format!("`{j}`"));
@@ -117,11 +125,12 @@ impl ClassicalDh {
         };
         let reasons: Vec<String> = with_b.map(name).collect();
         if !reasons.is_empty() {
-            return Self { rows: Vec::new(), residual: None, why_not: Some(reasons.join("; ")) };
+            return Self { rows: Vec::new(), residual: None, zero_below_m: least_m, why_not: Some(reasons.join("; ")) };
         }
         let four =
             |r: &GeneralizedRow| DhRow4 { joint: r.joint.clone(), theta: r.theta, a: r.a, d: r.d, alpha: r.alpha };
-        Self { rows: table.rows.iter().map(four).collect(), residual: Some(table.residual), why_not: None }
+        let rows = table.rows.iter().map(four).collect();
+        Self { rows, residual: Some(table.residual), zero_below_m: least_m, why_not: None }
     }
 }
 
@@ -152,7 +161,8 @@ pub(super) fn fmt_classical(f: &mut fmt::Formatter<'_>, tip: &str, table: &Class
     if let Some(why_not) = &table.why_not {
         return writeln!(f, "\nNo classical DH to {tip}: {why_not}");
     }
-    writeln!(f, "\nClassical DH to {tip} (deg, m), residual {:.1e}", table.residual.unwrap_or(f64::NAN))?;
+    let (residual, least_m) = (table.residual.unwrap_or(f64::NAN), table.zero_below_m);
+    writeln!(f, "\nClassical DH to {tip} (deg, m), residual {residual:.1e}, lengths below {least_m:.0e} as 0")?;
     writeln!(f, "{:24} {:>9} {:>9} {:>9} {:>9}", "joint", "theta", "d", "a", "alpha")?;
     table.rows.iter().try_for_each(|r| {
         let (theta, alpha) = (degrees(r.theta), degrees(r.alpha));

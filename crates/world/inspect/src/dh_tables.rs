@@ -1,5 +1,7 @@
 //! The DH tables of a robot.
 
+use std::fmt;
+
 use elbowroom_kinematics::dh::GeneralizedTable;
 use elbowroom_kinematics::{Chain, LinkId};
 use serde::Serialize;
@@ -18,7 +20,7 @@ pub struct DhTables {
     /// Largest difference between the product of the rows and forward kinematics; null for a mesh.
     #[serde(rename = "dh_residual")]
     pub residual: Option<f64>,
-    /// The classical DH table, which exists if every b is 0; null for a mesh.
+    /// The classical DH table, which exists if every b is 0 to the precision of files; null for a mesh.
     #[serde(rename = "dh_classical")]
     pub classical: Option<ClassicalDh>,
     /// The modified DH table (Craig); null for a mesh.
@@ -40,10 +42,27 @@ impl DhTables {
             tip: Some(chain.links()[tip.0].clone()),
             rows: dh::generalized(&table),
             residual: Some(table.residual),
-            classical: Some(ClassicalDh::of(&table)),
+            classical: Some(ClassicalDh::of(&table, chain, tip)),
             modified: Some(ModifiedDh::of(chain, tip)),
             direct: Some(DirectDh::of(chain, tip)),
             shown: if shown.is_empty() { vec![DhConvention::Generalized] } else { shown.to_vec() },
         }
+    }
+}
+
+impl fmt::Display for DhTables {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { tip: Some(tip), rows, residual: Some(residual), classical, modified, direct, shown } = self else {
+            return Ok(());
+        };
+        for convention in shown {
+            match convention {
+                DhConvention::Generalized => dh::fmt_generalized(f, tip, rows, *residual)?,
+                DhConvention::Classical => classical.iter().try_for_each(|t| dh::fmt_classical(f, tip, t))?,
+                DhConvention::Modified => modified.iter().try_for_each(|t| dh::fmt_modified(f, tip, t))?,
+                DhConvention::Direct => direct.iter().try_for_each(|t| dh::fmt_direct(f, tip, t))?,
+            }
+        }
+        Ok(())
     }
 }

@@ -7,16 +7,18 @@ use elbowroom_formats::{Diagnostic, mesh, robot};
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot};
-use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::LengthUnit;
+use elbowroom_spatial::{Pose, Vec3};
 use serde::Serialize;
 
 use crate::dh::DhConvention;
 use crate::dh_tables::DhTables;
 use crate::enclosing_volume::{self, EnclosingVolume};
 use crate::pairs::{self, PairRow};
+use crate::pose_solutions::PoseSolutions;
 use crate::resolution_levels::{self, LinkLevels};
 use crate::rows::{JointRow, MeshRow, joint_row, mesh_row, mesh_rows};
+use crate::surface_point::SurfacePoint;
 use crate::units::{self, SuspectUnit, suspect_units};
 
 /// Options of an inspection.
@@ -245,6 +247,32 @@ impl Inspection {
         }
     }
 
+    /// All joint values with which a link (the tip if `None`) is at a pose in the root link: x, y, z (m), roll, pitch, yaw
+    /// (rad).
+    ///
+    /// # Errors
+    /// [`Diagnostic`] if the model is a mesh or has no such link.
+    pub fn pose_solutions(&self, link: Option<&str>, pose: [f64; 6]) -> Result<PoseSolutions, Diagnostic> {
+        let chain = &self.need_robot("a pose")?.chain;
+        Ok(PoseSolutions::of(chain, tip(chain, &self.model, link)?, pose))
+    }
+
+    /// The chain that ends in a point (m) of a link, in the link's frame. The text shows its tables of these conventions.
+    ///
+    /// # Errors
+    /// [`Diagnostic`] if the model is a mesh, has no such link, or the point is not finite.
+    pub fn surface_point(&self, link: &str, point: Vec3, dh: &[DhConvention]) -> Result<SurfacePoint, Diagnostic> {
+        let robot = self.need_robot("a point of a link")?;
+        let link = tip(&robot.chain, &self.model, Some(link))?;
+        SurfacePoint::of(robot, link, point, dh).map_err(|e| Diagnostic::new(&self.model, None, e))
+    }
+
+    fn need_robot(&self, what: &str) -> Result<&Robot, Diagnostic> {
+        self.robot().ok_or_else(|| {
+            Diagnostic::new(&self.model, None, format!("is a mesh: it has no joints for {what}")).hint("a robot")
+        })
+    }
+
     /// The objects of a mesh file, with their names.
     pub fn solids(&self) -> &[(String, Vec<Collider>)] {
         match &self.source {
@@ -286,6 +314,6 @@ fn tip(chain: &Chain, path: &Path, name: Option<&str>) -> Result<LinkId, Diagnos
     let Some(name) = name else { return Ok(chain.tip()) };
     chain.link(name).ok_or_else(|| {
         Diagnostic::new(path, None, format!("there is no link `{name}`"))
-            .hint(format!("--tip with one of {}", chain.links().join(", ")))
+            .hint(format!("one of {}", chain.links().join(", ")))
     })
 }

@@ -4,8 +4,6 @@ use std::fmt;
 
 use elbowroom_kinematics::JointKind;
 
-use crate::dh::{self, DhConvention};
-use crate::dh_tables::DhTables;
 use crate::inspection::{Inspection, ModelKind};
 use crate::pairs::ReasonKind;
 use crate::resolution_levels::TrianglesRow;
@@ -28,7 +26,7 @@ impl fmt::Display for Inspection {
         self.fmt_levels(f)?;
         self.fmt_resolution(f)?;
         self.fmt_pairs(f)?;
-        self.fmt_dh(f)?;
+        write!(f, "{}", self.dh)?;
         if !self.warnings.is_empty() {
             writeln!(f, "\nNote")?;
         }
@@ -126,22 +124,6 @@ impl Inspection {
             let of_kind = || self.pairs.iter().filter(|p| p.kind == kind);
             let does = if of_kind().all(|p| p.tested) { "tested" } else { "skipped" };
             writeln!(f, "{:>6} {does}: {kind}", of_kind().count())?;
-        }
-        Ok(())
-    }
-
-    fn fmt_dh(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let DhTables { tip: Some(tip), rows, residual: Some(residual), classical, modified, direct, shown } = &self.dh
-        else {
-            return Ok(());
-        };
-        for convention in shown {
-            match convention {
-                DhConvention::Generalized => dh::fmt_generalized(f, tip, rows, *residual)?,
-                DhConvention::Classical => classical.iter().try_for_each(|t| dh::fmt_classical(f, tip, t))?,
-                DhConvention::Modified => modified.iter().try_for_each(|t| dh::fmt_modified(f, tip, t))?,
-                DhConvention::Direct => direct.iter().try_for_each(|t| dh::fmt_direct(f, tip, t))?,
-            }
         }
         Ok(())
     }

@@ -2,7 +2,8 @@
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use crate::JointKind;
+use super::residual::residual;
+use crate::{Chain, JointKind, LinkId};
 
 /// One generalized row: `T = Rz(θ)·Tz(d)·Tx(a)·Ty(b)·Rx(α)`.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,5 +60,23 @@ impl GeneralizedTable {
             let q = row.joint.as_deref().map_or(0.0, &mut value);
             at * row.transform(q)
         })
+    }
+
+    /// The sum of all lengths of the rows, m: an upper bound of the distance of the tip from the root without prismatic
+    /// joints.
+    pub fn length_m(&self) -> f64 {
+        self.rows.iter().map(|row| row.a.abs() + row.b.abs() + row.d.abs()).sum()
+    }
+
+    /// The table with every a, b and d below `least_m` set to 0: what is below the precision of a file counts as 0. The
+    /// residual is that of the new rows.
+    #[must_use]
+    pub fn rounded(&self, chain: &Chain, tip: LinkId, least_m: f64) -> Self {
+        let round = |length: f64| if length.abs() < least_m { 0.0 } else { length };
+        let row =
+            |row: &GeneralizedRow| GeneralizedRow { a: round(row.a), b: round(row.b), d: round(row.d), ..row.clone() };
+        let mut table = Self { rows: self.rows.iter().map(row).collect(), residual: 0.0 };
+        table.residual = residual(chain, tip, Pose::IDENTITY, |value| table.tip_in_root(value));
+        table
     }
 }

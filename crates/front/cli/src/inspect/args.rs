@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use elbowroom::inspect::DhConvention;
 
+use crate::arg_values::{LinkPoint, PoseNumbers};
 use crate::model_args::{JointArgs, Unit};
 
 #[derive(Debug, Args)]
@@ -14,6 +15,8 @@ use crate::model_args::{JointArgs, Unit};
   elbowroom inspect arm.urdf --write-srdf arm.srdf   the pairs that need not be tested
   elbowroom inspect cell.toml --pairs pairs.toml     all pairs of a cell, to decide on
   elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link: a table in a terminal, else CSV
+  elbowroom inspect arm.urdf --pose 0.8,0,0.9,0,3.14159265,0     all joint values with the tip there
+  elbowroom inspect arm.urdf --at link_3,0.1,0,0.05  the chain that ends in a point of a surface
   elbowroom inspect table.stl --unit mm --json")]
 #[allow(clippy::struct_excessive_bools)] // each is a command-line flag
 pub(crate) struct InspectArgs {
@@ -27,9 +30,8 @@ pub(crate) struct InspectArgs {
     pub(crate) unit: Option<Unit>,
     #[command(flatten)]
     pub(crate) joints: JointArgs,
-    /// The last link of the Denavit-Hartenberg table
-    #[arg(long, value_name = "LINK")]
-    pub(crate) tip: Option<String>,
+    #[command(flatten)]
+    pub(crate) chain: ChainArgs,
     /// The Denavit-Hartenberg tables to print, comma-separated; --json has all of them
     #[arg(long, value_enum, value_delimiter = ',', value_name = "TABLE,…", conflicts_with = "states")]
     pub(crate) dh: Vec<Dh>,
@@ -62,6 +64,21 @@ pub(crate) struct InspectArgs {
     /// Print one JSON document instead of tables
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Which chain of the model is asked about.
+#[derive(Debug, Args)]
+pub(crate) struct ChainArgs {
+    /// The last link of the Denavit-Hartenberg table, and the link of --pose
+    #[arg(long, value_name = "LINK")]
+    pub(crate) tip: Option<String>,
+    /// Print instead all joint values with which the tip is at this pose in the root link, in metres and radians
+    #[arg(long, value_name = "X,Y,Z,ROLL,PITCH,YAW", allow_hyphen_values = true, conflicts_with_all = ["states", "dh", "at"])]
+    pub(crate) pose: Option<PoseNumbers>,
+    /// Print instead the chain that ends in this point of a link (metres, link frame): tables, Jacobian, reach; with
+    /// --states the point's place in each state
+    #[arg(long, value_name = "LINK,X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) at: Option<LinkPoint>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

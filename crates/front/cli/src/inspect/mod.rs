@@ -2,6 +2,8 @@
 
 pub(crate) mod args;
 mod link_poses;
+mod picture;
+mod point_of_link;
 
 use std::io::IsTerminal;
 use std::path::Path;
@@ -9,13 +11,15 @@ use std::path::Path;
 use elbowroom::cell::{Cell, PairFile, QueryModel};
 use elbowroom::formats::stl::write_binary;
 use elbowroom::inspect::{DhConvention, InspectOptions, Inspection};
-use elbowroom::report::model_picture;
 use elbowroom::spatial::units::LengthUnit;
 
+use crate::arg_values::PoseNumbers;
 use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json, refuse_existing};
 use crate::output_file::{write_bytes, write_file};
 use args::InspectArgs;
 use link_poses::link_poses;
+use picture::picture;
+use point_of_link::point_of_link;
 
 pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
     if let Some(path) = args.pairs.as_ref().filter(|_| is_cell(&args.model)) {
@@ -29,17 +33,23 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
         unit: args.unit.map(LengthUnit::from),
         joints: args.joints.joints.clone(),
         joint: args.joints.joint.clone(),
-        tip: args.tip.clone(),
+        tip: args.chain.tip.clone(),
         dh: args.dh.iter().copied().map(DhConvention::from).collect(),
-        brief: args.brief || args.states.is_some(),
+        brief: args.brief || args.states.is_some() || args.chain.pose.is_some() || args.chain.at.is_some(),
     };
     let inspection = Inspection::of(&args.model, &options)?;
+    if let Some(PoseNumbers(pose)) = args.chain.pose {
+        return pose_solutions(&inspection, args, pose);
+    }
+    if let Some(at) = &args.chain.at {
+        return point_of_link(&inspection, at, args);
+    }
     if let Some(states) = &args.states {
         inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         return link_poses(&inspection, states, args.table || std::io::stdout().is_terminal() && !args.json);
     }
     if let Some(path) = &args.picture {
-        picture(&inspection, path)?;
+        picture(&inspection, None, path)?;
     }
     if let Some(dir) = &args.models {
         models(&inspection, dir)?;
@@ -72,6 +82,18 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
     Ok(ExitStatus::Success)
 }
 
+/// Prints all joint values with which the tip is at a pose.
+fn pose_solutions(inspection: &Inspection, args: &InspectArgs, pose: [f64; 6]) -> Result<ExitStatus, Failure> {
+    inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+    let solutions = inspection.pose_solutions(args.chain.tip.as_deref(), pose)?;
+    if args.json {
+        print_json(&solutions)?;
+    } else {
+        print(&solutions.to_string())?;
+    }
+    Ok(if solutions.solutions.is_empty() { ExitStatus::NegativeResult } else { ExitStatus::Success })
+}
+
 fn is_cell(model: &Path) -> bool {
     model.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
@@ -94,20 +116,6 @@ fn write_pairs(model: &QueryModel, path: &Path, accept: bool) -> Result<(), Fail
     let counted: Vec<String> =
         counted.into_iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
     note(format_args!("wrote {}: {}", path.display(), counted.join(", ")));
-    Ok(())
-}
-
-/// Writes a picture, or a page with four views.
-fn picture(inspection: &Inspection, path: &Path) -> Result<(), Failure> {
-    let ends = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
-    if !(ends("png") || ends("html")) {
-        let what = format!("{}: pictures are png or html\n  write: --picture model.png", path.display());
-        return Err(Failure::Wrong(what));
-    }
-    write_file(path, |out| {
-        if ends("png") { model_picture::write_png(inspection, out) } else { model_picture::write_page(inspection, out) }
-    })?;
-    note(format_args!("wrote {}", path.display()));
     Ok(())
 }
 
