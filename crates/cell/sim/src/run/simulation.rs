@@ -17,6 +17,7 @@ use super::options::{RunOptions, RunProgress};
 use super::own_motion::OwnMotion;
 use super::region_recorder::RegionRecorder;
 use super::simulated_robot::{Governed, SimulatedRobot};
+use super::tick_time::tick_time_s;
 use super::virtual_robot::CooperatingRobots;
 use crate::motion::RegionSwitch;
 use crate::recording::{RunEnd, RunEvent};
@@ -208,9 +209,4 @@ impl Simulation<'_> {
         }
         self.cooperate(t_s)
     }
-}
-
-/// Time of a tick, s, rounded to nanoseconds.
-fn tick_time_s(tick: u64, tick_s: f64) -> f64 {
-    (tick as f64 * tick_s * 1e9).round() / 1e9
 }
