@@ -130,8 +130,7 @@ impl CellOperator {
             ForceResponse::Field => None,
             ForceResponse::Admittance(settings) => Some(VirtualBody::new(settings).map(Response::Admittance)),
             ForceResponse::Impedance(settings) => {
-                // A row holds until the next one, and then the hand moves within one tick.
-                let fastest = self.stream.largest_step_m(ArmForces::REGRIP_M) / cell.timing.tick_s;
+                let fastest = self.stream.largest_speed_m_s(ArmForces::REGRIP_M, cell.timing.tick_s);
                 let hand_speed_m_s = settings.hand_speed_m_s.max(fastest);
                 let settings = ImpedanceSettings { hand_speed_m_s, ..settings };
                 Some(ImpedancePort::new(settings).map(Response::Impedance))

@@ -110,10 +110,16 @@ impl OperatorStream {
         Self { interpolation, ..self }
     }
 
-    /// Largest motion of the desired point from one row to the next, metres, up to a limit beyond which it is none.
-    pub fn largest_step_m(&self, limit_m: f64) -> f64 {
-        let step = |w: &[(f64, Option<Pose>)]| Some(w[0].1?.translation.distance(w[1].1?.translation));
-        self.rows.windows(2).filter_map(step).filter(|step| *step <= limit_m).fold(0.0, f64::max)
+    /// Largest speed of the desired point, m/s, if a row that holds is left within `tick_s`. Motions beyond `limit_m` are
+    /// none.
+    pub fn largest_speed_m_s(&self, limit_m: f64, tick_s: f64) -> f64 {
+        let speed = |w: &[(f64, Option<Pose>)]| {
+            let step_m = w[0].1?.translation.distance(w[1].1?.translation);
+            let between_s = w[1].0 - w[0].0;
+            let is_even = self.interpolation == Interpolation::Linear && between_s <= self.stale_s;
+            (step_m <= limit_m).then_some(step_m / if is_even { between_s } else { tick_s })
+        };
+        self.rows.windows(2).filter_map(speed).fold(0.0, f64::max)
     }
 
     /// The rows after one time (s; from the first if `None`) until another: their times, and the desired poses while the

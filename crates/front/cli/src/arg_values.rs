@@ -18,6 +18,16 @@ impl std::str::FromStr for Numbers {
     }
 }
 
+/// Largest coordinate, m: beyond it, double precision has no micrometres.
+const FARTHEST_M: f64 = 1e6;
+/// Largest angle, rad: some turns.
+const LARGEST_ANGLE_RAD: f64 = 100.0;
+
+fn within(values: &[f64], most: f64, unit: &str) -> Result<(), String> {
+    let beyond = values.iter().find(|v| v.abs() > most);
+    beyond.map_or(Ok(()), |v| Err(format!("{v:e} is beyond {most} {unit}: is it in another unit?")))
+}
+
 /// A pose: x, y, z, roll, pitch, yaw.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PoseNumbers(pub(crate) [f64; 6]);
@@ -28,7 +38,10 @@ impl std::str::FromStr for PoseNumbers {
     fn from_str(text: &str) -> Result<Self, String> {
         let Numbers(values) = text.parse()?;
         let count = values.len();
-        let six = values.try_into().map_err(|_| format!("has {count} numbers: write x,y,z,roll,pitch,yaw"))?;
+        let six: [f64; 6] =
+            values.try_into().map_err(|_| format!("has {count} numbers: write x,y,z,roll,pitch,yaw"))?;
+        within(&six[..3], FARTHEST_M, "metres")?;
+        within(&six[3..], LARGEST_ANGLE_RAD, "radians")?;
         Ok(Self(six))
     }
 }
@@ -52,7 +65,8 @@ impl std::str::FromStr for LinkPoint {
             return Err(format!("needs a link and three numbers: {hint}"));
         };
         let Numbers(values) = format!("{x},{y},{z}").parse().map_err(|e| format!("{e}\n  {hint}"))?;
-        let point = values.try_into().map_err(|_| hint.to_owned())?;
+        let point: [f64; 3] = values.try_into().map_err(|_| hint.to_owned())?;
+        within(&point, FARTHEST_M, "metres")?;
         Ok(Self { link: link.trim().to_owned(), point })
     }
 }

@@ -65,6 +65,14 @@ fn a_pose_out_of_reach_has_no_answer_and_says_so() {
     assert!(answer.stdout.contains("0 solutions") && answer.stdout.contains("out of reach"), "{}", answer.stdout);
     let json = elbowroom(Path::new("."), &["inspect", ns16, "--pose=9,0,0,0,0,0", "--json"]).expect(1).json();
     assert!(json["solutions"].as_array().unwrap().is_empty() && json["why_none"].is_string(), "{json}");
+    for (pose, part) in [("1e9,0,0,0,0,0", "1000000 metres"), ("0,0,1,1e300,0,0", "100 radians")] {
+        let refused = elbowroom(Path::new("."), &["inspect", ns16, "--pose", pose]).expect(2);
+        assert!(refused.stderr.contains(part), "{}", refused.stderr);
+    }
+    for other in [["--picture", "a.png"], ["--models", "m"], ["--pairs", "p.toml"], ["--write-srdf", "s.srdf"]] {
+        let args = [&["inspect", ns16, "--pose", "1,0,1,0,0,0"][..], &other].concat();
+        assert!(elbowroom(Path::new("."), &args).expect(2).stderr.contains(other[0]), "never ignored: {other:?}");
+    }
     let refused = elbowroom(Path::new("."), &["inspect", ns16, "--pose", "1,2,3"]).expect(2);
     assert!(refused.stderr.contains("has 3 numbers"), "{}", refused.stderr);
     let refused = elbowroom(Path::new("."), &["inspect", ns16, "--pose", "1,0,1,0,0,0", "--tip", "hand"]).expect(2);
@@ -125,7 +133,12 @@ fn a_point_beside_its_link_is_told_the_nearest_point_and_drawn() {
     elbowroom(dir.path(), &["inspect", ns16, "--brief", "--picture", "without.png"]).expect(0);
     let bytes = |name: &str| std::fs::read(dir.path().join(name)).unwrap();
     assert_ne!(bytes("at.png"), bytes("without.png"));
-    for (at, part) in [("link_3,1,2", "LINK,x,y,z"), ("link_3,a,0,0", "\"a\""), ("leg,0,0,0", "base_link")] {
+    for (at, part) in [
+        ("link_3,1,2", "LINK,x,y,z"),
+        ("link_3,a,0,0", "\"a\""),
+        ("leg,0,0,0", "base_link"),
+        ("link_3,1e200,0,0", "metres"),
+    ] {
         let refused = elbowroom(dir.path(), &["inspect", ns16, "--at", at]).expect(2);
         assert!(refused.stderr.contains(part), "{at}: {}", refused.stderr);
     }

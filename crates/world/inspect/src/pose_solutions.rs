@@ -50,8 +50,14 @@ impl PoseSolutions {
         let mut solver = IkSolver::new(chain, link, Pose::IDENTITY, IkOptions::default());
         let mut state = ChainState::at_rest(chain);
         let rest = state.q.clone();
-        let found = solver.solve_all(&target, &rest);
-        let why_none = if found.is_empty() { solver.solve(&target, &rest).err() } else { None };
+        let mut found = solver.solve_all(&target, &rest);
+        let mut why_none = None;
+        if found.is_empty() {
+            match solver.solve(&target, &rest) {
+                Ok(solution) => found.push(solution.q),
+                Err(e) => why_none = Some(e),
+            }
+        }
         let solutions = found.into_iter().map(|q| {
             state.q.copy_from_slice(&q);
             chain.forward(&mut state);

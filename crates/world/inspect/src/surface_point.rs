@@ -126,12 +126,12 @@ fn reach(chain: &Chain, point: &mut PointChain) -> [f64; 2] {
 
 impl fmt::Display for SurfacePoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |p: [f64; 3]| p.map(|v| format!("{:.4}", v + 0.0)).join(", ");
+        let list = |p: [f64; 3]| p.map(|v| format!("{:.4}", (v * 1e4).round() / 1e4 + 0.0)).join(", ");
         writeln!(f, "{} at {} m", self.link, list(self.point_m))?;
         match (self.off_surface_m, self.nearest_m) {
             (Some(off), Some(nearest)) if off.abs() > ON_SURFACE_M => {
-                let side = if off < 0.0 { "below" } else { "above" };
-                writeln!(f, "  surface  {:.2} mm {side} it; nearest point {}", 1e3 * off.abs(), list(nearest))?;
+                let side = if off < 0.0 { "inside" } else { "outside" };
+                writeln!(f, "  surface  the point is {:.2} mm {side}; nearest {}", 1e3 * off.abs(), list(nearest))?;
             }
             (Some(_), _) => writeln!(f, "  surface  on it")?,
             _ => writeln!(f, "  surface  the link has none")?,
@@ -141,7 +141,7 @@ impl fmt::Display for SurfacePoint {
         let [least, most] = self.reach_m;
         writeln!(
             f,
-            "  at rest  {} m in the root link; elsewhere {least:.3} to {most:.3} m from its origin",
+            "  at rest  {} m in the root link; in sampled states {least:.3} to {most:.3} m from its origin",
             list(self.at_rest_m)
         )?;
         write!(f, "{}", self.dh)?;

@@ -88,9 +88,10 @@ impl SurfacePatch {
         let cone = NormalCone::around(cones, middle);
         let thickness = |p: &Self| {
             let offset: [f32; 3] = std::array::from_fn(|k| p.center[k] - center[k]);
-            let cos = dot(p.cone.axis, cone.axis);
-            // A disc of the ball's radius and of the patch's own thickness.
-            let sin = (1.0 - cos * cos).max(0.0).sqrt();
+            // A disc of the ball's radius and of the patch's own thickness. From the cosine, the sine of a small angle would
+            // be 0.
+            let [own, whole] = [&p.cone, &cone].map(|cone| cone.axis_and_half_angle().0);
+            let sin = own.cross(whole).length() as f32 + ROUNDING;
             dot(offset, cone.axis).abs() + p.radius.min(p.thickness + p.radius * sin)
         };
         let thickness = patches.iter().map(thickness).fold(0.0, f32::max) * 1.000_01 + ROUNDING;

@@ -73,11 +73,13 @@ pub(crate) struct ChainArgs {
     #[arg(long, value_name = "LINK")]
     pub(crate) tip: Option<String>,
     /// Print instead all joint values with which the tip is at this pose in the root link, in metres and radians
-    #[arg(long, value_name = "X,Y,Z,ROLL,PITCH,YAW", allow_hyphen_values = true, conflicts_with_all = ["states", "dh", "at"])]
+    #[arg(long, value_name = "X,Y,Z,ROLL,PITCH,YAW", allow_hyphen_values = true,
+        conflicts_with_all = ["states", "table", "dh", "at", "picture", "models", "pairs", "write_srdf"])]
     pub(crate) pose: Option<PoseNumbers>,
     /// Print instead the chain that ends in this point of a link (metres, link frame): tables, Jacobian, reach; with
     /// --states the point's place in each state
-    #[arg(long, value_name = "LINK,X,Y,Z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LINK,X,Y,Z", allow_hyphen_values = true,
+        conflicts_with_all = ["tip", "table", "models", "pairs", "write_srdf"])]
     pub(crate) at: Option<LinkPoint>,
 }
 

@@ -25,6 +25,10 @@ pub(super) fn point_of_link(
         picture(inspection, Some(&point), path)?;
     }
     if let Some(states) = &args.states {
+        if args.json {
+            let what = "--at with --states prints CSV\n  write: without --json";
+            return Err(Failure::Wrong(what.to_owned()));
+        }
         return places(inspection, &mut point, states);
     }
     if args.json {
