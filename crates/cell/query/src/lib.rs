@@ -43,6 +43,7 @@ pub mod watch;
 pub use cover_cache::CoverCache;
 pub use elbowroom_scene::Level;
 pub use rows::{
-    BLOCK, ContactRecord, ContactRow, Query, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow,
-    QueryStates, UnknownQueryKind, evaluate, evaluate_contacts, evaluate_query,
+    BLOCK, ContactRecord, ContactRow, MotionRecord, MotionRow, Query, QueryEffort, QueryKind, QueryPairs,
+    QueryPairsError, QueryRecord, QueryRow, QueryStates, UnknownQueryKind, evaluate, evaluate_contacts,
+    evaluate_motions, evaluate_query,
 };

@@ -7,10 +7,10 @@ use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::RrtConnectSettings;
 use elbowroom_query::QueryStates;
-use elbowroom_query::plan::{PathAnswer, PathGoal, PathRequest, plan, write_csv};
+use elbowroom_query::plan::{KeptAxis, PathAnswer, PathGoal, PathPlanner, PathRequest, TcpMotion, plan, write_csv};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Level, SceneState};
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::folder;
 
 fn request(robot: &str, from: &[f64], to: &[f64]) -> PathRequest {
@@ -133,4 +133,122 @@ fn an_optimized_path_is_free_and_no_longer_than_the_first() {
     let cost = |answer: &PathAnswer| answer.timed.as_ref().unwrap().path.length_rad;
     assert!(cost(&shorter) <= cost(&first), "{} > {}", cost(&shorter), cost(&first));
     assert!(cost(&shorter) >= 1.6, "the straight segment is 1.6 rad long");
+}
+
+/// The TCP of the first robot.
+fn tcp(cell: &Cell, q: &[f64]) -> Pose {
+    let robot = &cell.robots[0];
+    let mut state = ChainState::new(&robot.robot.chain);
+    state.q.copy_from_slice(q);
+    robot.robot.chain.forward(&mut state);
+    robot.base_in_world * state.link_in_root(robot.flange) * robot.tcp_in_flange
+}
+
+/// The rows of an answer, and three configurations between each two.
+fn fine(answer: &PathAnswer) -> Vec<Vec<f64>> {
+    let rows = answer.timed.as_ref().expect("a path").trajectory.rows();
+    let between = |w: &[elbowroom_kinematics::TrajectoryRow], share: f64| -> Vec<f64> {
+        w[0].q.iter().zip(&w[1].q).map(|(a, b)| a + (b - a) * share).collect()
+    };
+    rows.windows(2).flat_map(|w| [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| between(w, share))).collect()
+}
+
+fn moved(cell: &Cell, by: Vec3) -> Pose {
+    let here = tcp(cell, &HERE);
+    Pose { translation: here.translation + by, ..here }
+}
+
+fn to_pose(cell: &Cell, by: Vec3, tcp_motion: TcpMotion) -> PathRequest {
+    PathRequest { to: PathGoal::Tcp(moved(cell, by).into()), tcp_motion, ..request("arm", &HERE, &THERE) }
+}
+
+#[test]
+fn a_linear_path_keeps_the_tcp_on_its_line() {
+    let cell = parse(&format!("{HEAD}[robot.arm]\n{ARM}"));
+    for by in [Vec3::new(0.0, 0.3, -0.1), Vec3::new(-0.2, 0.1, 0.1), Vec3::new(0.1, 0.2, 0.0)] {
+        let answer = plan(&cell, &to_pose(&cell, by, TcpMotion::Linear)).unwrap();
+        let (from, to) = (tcp(&cell, &HERE), moved(&cell, by));
+        let mut farthest: f64 = 0.0;
+        for q in fine(&answer) {
+            let at = tcp(&cell, &q);
+            let share = (at.translation - from.translation).dot(by) / by.length_squared();
+            let off = (at.translation - from.translation - by * share).length();
+            assert!(off < 1e-3 && (-1e-3..1.001).contains(&share), "{off} m at {share}");
+            assert!(from.inverse_mul(&at).rotation.angle() < 3e-3);
+            farthest = farthest.max(share);
+        }
+        assert!(farthest > 1.0 - 1e-9);
+        assert!(
+            tcp(&cell, answer.timed.as_ref().unwrap().trajectory.last().unwrap()).inverse_mul(&to).translation.length()
+                < 1e-6
+        );
+    }
+    // A ball on the line: a free path leads around it, a straight one ends before it.
+    let by = Vec3::new(0.0, 0.3, 0.0);
+    let on_line = moved(&cell, by * 0.5).translation * 1e3;
+    let ball =
+        format!("[object.ball]\nshape = \"sphere\"\nat = [{}, {}, {}]\nradius = 20\n", on_line.x, on_line.y, on_line.z);
+    let cell = parse(&format!("{HEAD}[robot.arm]\n{ARM}{ball}"));
+    let answer = plan(&cell, &to_pose(&cell, by, TcpMotion::Linear)).unwrap();
+    assert!(!answer.found && answer.reason.as_ref().unwrap().contains("it is not free"), "{:?}", answer.reason);
+    assert!(plan(&cell, &to_pose(&cell, by, TcpMotion::Free)).unwrap().found);
+    let refused = |request: &PathRequest| plan(&cell, request).unwrap_err().to_string();
+    assert!(
+        refused(&PathRequest { to: THERE[..].into(), ..to_pose(&cell, by, TcpMotion::Linear) })
+            .contains("leads to a pose")
+    );
+    assert!(
+        refused(&PathRequest { planner: PathPlanner::Grid, ..to_pose(&cell, by, TcpMotion::Linear) })
+            .contains("no map")
+    );
+}
+
+#[test]
+fn an_axis_that_is_kept_stays_within_its_angle() {
+    let axis_in_tcp = Vec3::new(0.0, 0.6, 0.8);
+    let keep = |tolerance_rad: f64| TcpMotion::KeptAxis(KeptAxis { axis_in_tcp, tolerance_rad });
+    let open = parse(&format!("{HEAD}[robot.arm]\n{ARM}"));
+    let by = Vec3::new(0.0, 1.1, 0.0);
+    let between = moved(&open, by * 0.5).translation * 1e3;
+    let post =
+        format!("[object.post]\nshape = \"box\"\nat = [{}, {}, 500]\nsize = [80, 80, 1600]\n", between.x, between.y);
+    // A region whose border the path keeps away from, beside the axis.
+    let wall =
+        "[region.wall]\nshape = \"box\"\nfrom = [-1500, -1500, 2900]\nto = [1500, 1500, 3000]\nguards = [\"arm\"]\n";
+    for (text, corners) in [(String::new(), 0), (post, 1), (wall.to_owned(), 0)] {
+        let cell = parse(&format!("{HEAD}[robot.arm]\n{ARM}{text}"));
+        let answer = plan(&cell, &to_pose(&cell, by, keep(0.05))).unwrap();
+        let direction = tcp(&cell, &HERE).rotation * axis_in_tcp;
+        let off = |q: &[f64]| {
+            let axis = tcp(&cell, q).rotation * axis_in_tcp;
+            axis.cross(direction).length().atan2(axis.dot(direction))
+        };
+        let most = fine(&answer).iter().map(|q| off(q)).fold(0.0, f64::max);
+        assert!(
+            most <= 0.05 + 1e-9 && waypoints(&answer) >= 2 + corners,
+            "{most} rad, {} waypoints",
+            waypoints(&answer)
+        );
+        check(
+            &cell,
+            &answer,
+            &PathRequest {
+                to: answer.timed.as_ref().unwrap().trajectory.last().unwrap().to_vec().into(),
+                ..request("arm", &HERE, &THERE)
+            },
+        );
+        // Free, the axis turns farther.
+        let free = plan(&cell, &to_pose(&cell, by, TcpMotion::Free)).unwrap();
+        assert!(fine(&free).iter().map(|q| off(q)).fold(0.0, f64::max) > 0.05);
+    }
+    let refused = |request: &PathRequest| plan(&open, request).unwrap_err().to_string();
+    assert!(refused(&PathRequest { tcp_motion: keep(0.1), ..request("arm", &HERE, &THERE) }).contains("wider angle"));
+    assert!(refused(&to_pose(&open, by, keep(0.0))).contains("not above 0"));
+    let none = TcpMotion::KeptAxis(KeptAxis { axis_in_tcp: Vec3::ZERO, tolerance_rad: 0.1 });
+    assert!(refused(&to_pose(&open, by, none)).contains("no direction"));
+    // Out of a region no axis is kept.
+    let inside = parse(&format!("{HEAD}[robot.arm]\n{ARM}{}", wall.replace("2900", "300")));
+    assert!(
+        plan(&inside, &to_pose(&inside, by, keep(0.1))).unwrap_err().to_string().contains("start is in region `wall`")
+    );
 }

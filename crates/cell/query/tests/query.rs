@@ -6,9 +6,11 @@ use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_kinematics::ChainState;
 use elbowroom_proximity::{Shape, collides, separation};
 use elbowroom_query::{BLOCK, Level, QueryKind, QueryRecord, QueryRow, QueryStates, evaluate};
+use elbowroom_query::{MotionRecord, Query, QueryPairs, evaluate_motions};
 use elbowroom_robot::RobotId;
 use elbowroom_robot::collision_pairs;
 use elbowroom_robot::{Collider, GeometryId};
+use elbowroom_scene::CheckerOptions;
 use elbowroom_spatial::Pose;
 use proptest::prelude::*;
 
@@ -210,4 +212,61 @@ fn names_are_those_of_the_cell() {
     let geometry = GeometryId::Link { robot: RobotId(0), link };
     assert_eq!(model.geometry_name(geometry), "left/link_3");
     assert!(written.csv().starts_with("0,1,0.0,left/link_3,ball,"), "{}", written.csv());
+}
+
+/// Motions against dense samples of both sides of the first contact.
+#[test]
+fn motions_are_free_until_their_first_contact() {
+    let cell = Cell::parse("cell.toml", CELL).unwrap();
+    let model = QueryModel::of_cell(&cell);
+    let mut text = String::from("left.joint_1,left.joint_2,left.joint_3,right.joint_1,right.joint_2\n");
+    let mut random = elbowroom_testkit::random::Random(11);
+    let mut all = Vec::new();
+    for _ in 0..60 {
+        let q: Vec<f64> = (0..5).map(|_| random.between(-1.5, 1.5)).collect();
+        let _ = writeln!(text, "{}", q.iter().map(f64::to_string).collect::<Vec<_>>().join(","));
+        all.push(q);
+    }
+    let states = QueryStates::parse("q.csv".as_ref(), &text, &model).unwrap();
+    let scene = model.scene(OutOfReachProofs::Compute).unwrap();
+    let (pairs, start) = (QueryPairs::all(), model.start_state(&scene).unwrap());
+    let query = Query {
+        kind: QueryKind::Time,
+        options: CheckerOptions::default(),
+        is_timed: true,
+        pairs: &pairs,
+        all_pairs_m: None,
+        start: &start,
+    };
+    let mut rows = Vec::new();
+    let effort = evaluate_motions(&scene, &states, &query, &mut |block| {
+        rows.extend_from_slice(block);
+        true
+    });
+    assert_eq!((rows.len(), effort.unwrap().times_s.len()), (59, 59));
+    let at = |index: usize, share: f64| -> f64 {
+        let q: Vec<f64> = all[index].iter().zip(&all[index + 1]).map(|(a, b)| a + (b - a) * share).collect();
+        let pairs = naive(&model, &[q[..3].to_vec(), q[3..].to_vec()]);
+        pairs.iter().map(|p| p.2).fold(f64::INFINITY, f64::min)
+    };
+    let (mut hits, mut free) = (0, 0);
+    for (index, row) in rows.iter().enumerate() {
+        assert_eq!(row.index, index);
+        let record = MotionRecord::of(row, &model);
+        assert_eq!(record.csv().split(',').count(), MotionRecord::HEADER.split(',').count());
+        assert_eq!((record.collides == 1, record.certain), (row.hit.is_some(), 1));
+        // A motion that starts in contact has no free part.
+        for n in 0..if record.free_share > 0.0 { 40 } else { 0 } {
+            let share = record.free_share * f64::from(n) / 40.0;
+            assert!(at(index, share) > 0.0, "motion {index} at {share}: {record:?}");
+        }
+        if row.hit.is_some() {
+            assert!(at(index, record.free_share) <= 1.01e-4, "motion {index}: {record:?}");
+            hits += 1;
+        } else {
+            assert!(record.free_share == 1.0 && at(index, 1.0) > 0.0);
+            free += 1;
+        }
+    }
+    assert!(hits > 5 && free > 5, "{hits} and {free}");
 }

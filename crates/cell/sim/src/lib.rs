@@ -49,10 +49,11 @@ pub use held_object::held_object;
 pub use motion::{PathSearch, PlannedPaths};
 pub use operator_summary::OperatorSummary;
 pub use recording::{
-    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, EventRow, ForceSample, GoverningPoint, GuidanceSample,
-    GuidanceState, GuidanceTrack, HandOverRecord, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PathReplan,
-    PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding, RobotTrack,
-    RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, VirtualRobotSample, VirtualRobotTrack, WorkPieceStop,
+    AvoidanceSample, AvoidanceTrack, Collision, Deadlock, Evasion, EventRow, ForceSample, GoverningPoint,
+    GuidanceSample, GuidanceState, GuidanceTrack, HandOverRecord, Hold, HoldReason, ObjectTrack, Outcome, PartKind,
+    PathReplan, PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding,
+    RobotTrack, RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, VirtualRobotSample, VirtualRobotTrack,
+    WorkPieceStop,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
 pub use starts::check_starts;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::operator_summary::OperatorSummary;
 use crate::recording::{
-    AvoidanceSample, AvoidanceTrack, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
+    AvoidanceSample, AvoidanceTrack, Evasion, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
     RecordedRegionKind, Recording, RobotEnding, RunEnd, SensorTrack, Stop, TickTimes,
 };
 use crate::virtual_robot_summary::VirtualRobotSummary;
@@ -292,7 +292,7 @@ impl From<&Stop> for StopSummary {
 }
 
 /// Evasion of a robot.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AvoidanceSummary {
     /// Time during which the rules corrected its motion, s.
     pub evading_s: f64,
@@ -302,6 +302,8 @@ pub struct AvoidanceSummary {
     pub waiting_s: f64,
     /// Smallest separation distance to any obstacle, m; null if no obstacle was near.
     pub min_distance_m: Option<f64>,
+    /// Its evasions: the point of the surface that was steered, and against what.
+    pub evasions: Vec<Evasion>,
     /// Number of replanning attempts.
     pub plans: usize,
     /// Number of successful ones.
@@ -320,6 +322,7 @@ impl AvoidanceSummary {
             off_path_s: time(&|s| s.path_deviation_s > 0.0),
             waiting_s: time(&|s| s.state == AvoiderState::Waiting),
             min_distance_m: least.is_finite().then_some(least),
+            evasions: track.evasions.clone(),
             plans: track.plans.len(),
             plans_found: track.plans.iter().filter(|p| p.search_s.is_some()).count(),
             step_ns: track.step_ns.into(),

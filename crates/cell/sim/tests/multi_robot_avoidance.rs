@@ -41,6 +41,21 @@ fn another_robot_is_evaded_unless_it_is_listed_as_known() {
     // It returns to its initial configuration.
     assert!(robots[0].samples.last().unwrap().q.iter().all(|v| v.abs() < 1e-6));
 
+    // What is steered: the point of its ball that is nearest to the other.
+    let evasion = &robots[0].avoidance.as_ref().unwrap().evasions[0];
+    let event = outcome.recording.events.iter().find(|e| e.event.name() == "evade").unwrap();
+    assert_eq!((event.t_s, event.robot.as_str()), (evasion.t_s, "waits"));
+    assert_eq!((event.region.as_str(), evasion.obstacle.as_deref()), ("drives/link_2", Some("drives/link_2")));
+    assert_eq!(
+        (evasion.link.as_str(), &evasion.moved_by[..]),
+        ("link_2", &["joint_1".to_owned(), "joint_2".to_owned()][..])
+    );
+    assert!((evasion.in_link_m.iter().map(|v| v * v).sum::<f64>().sqrt() - 0.05).abs() < 1e-9, "{evasion:?}");
+    let sample = |robot: usize| robots[robot].samples.iter().find(|s| s.t_s >= evasion.t_s - 1e-9).unwrap();
+    let [here, there] = [0, 1].map(|robot| &sample(robot).q);
+    let gap = (here[0] - there[0]).hypot(here[1] - there[1]) - 0.1;
+    assert!((gap - evasion.distance_m).abs() < 0.02, "{gap} and {}", evasion.distance_m);
+
     let named = run(&cell("robots = [\"drives\"]"));
     let same = named.recording.robots[0].samples.iter().zip(&robots[0].samples).all(|(a, b)| a.q == b.q);
     assert!(same && named.recording.robots[0].samples.len() == robots[0].samples.len());

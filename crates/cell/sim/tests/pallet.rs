@@ -59,7 +59,7 @@ fn the_arm_evades_the_cart_and_completes_its_program() {
     assert_eq!(track.samples.len(), robot.samples.len());
     assert!(track.samples.iter().any(|s| s.state == AvoiderState::Evading));
     assert!(track.samples.iter().all(|s| s.nearest_m > 0.04), "the cart is closer than the clearance");
-    let summary = RunSummary::from(&outcome.recording).robots[0].avoidance.unwrap();
+    let summary = RunSummary::from(&outcome.recording).robots[0].avoidance.clone().unwrap();
     assert!(summary.evading_s > 0.1 && summary.off_path_s > 0.1 && summary.min_distance_m.is_some_and(|m| m > 0.04));
     let occurred = |what: &str| outcome.recording.events.iter().any(|e| e.event.name() == what);
     assert!(occurred("evade") && occurred("on_path"));

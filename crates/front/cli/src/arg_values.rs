@@ -71,6 +71,33 @@ impl std::str::FromStr for LinkPoint {
     }
 }
 
+/// An axis, and the angle by which it may turn, in the cell file's unit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct KeptAxisArg {
+    pub(crate) axis: [f64; 3],
+    pub(crate) angle: f64,
+}
+
+impl std::str::FromStr for KeptAxisArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let hint = "write AXIS=ANGLE, as z=5 or 0,0.7,0.7=5";
+        let (axis, angle) = text.split_once('=').ok_or_else(|| format!("has no angle: {hint}"))?;
+        let axis = match axis.trim() {
+            "x" => [1.0, 0.0, 0.0],
+            "y" => [0.0, 1.0, 0.0],
+            "z" => [0.0, 0.0, 1.0],
+            numbers => {
+                let Numbers(values) = numbers.parse().map_err(|e| format!("{e}\n  {hint}"))?;
+                values.try_into().map_err(|_| hint.to_owned())?
+            }
+        };
+        let angle = angle.trim().parse::<f64>().ok().filter(|v| *v > 0.0 && v.is_finite());
+        Ok(Self { axis, angle: angle.ok_or_else(|| format!("the angle is not above 0: {hint}"))? })
+    }
+}
+
 /// A configuration: joint values, or the name of a state.
 #[derive(Debug, Clone)]
 pub(crate) enum Configuration {

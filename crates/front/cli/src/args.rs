@@ -170,6 +170,7 @@ pub(crate) struct CheckArgs {
   elbowroom query cell.toml --ask collision --level L2              with a bounding volume per link
   elbowroom query cell.toml --ask distance --between arm,conveyor   nothing but these two
   elbowroom query cell.toml --ask distance --all-pairs 0.1          every pair nearer than 0.1 m
+  elbowroom query cell.toml --ask time --states path.csv            the first contact of the motion between the rows
   elbowroom query cell.toml --ask contacts --pairs pairs.toml       all triangles that touch, but for what may touch
 
 Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level; those of contacts are in docs/query.md.
@@ -189,17 +190,16 @@ pub(crate) struct QueryArgs {
     /// Length unit of a 3DS model, or of a URDF's meshes whose format states none
     #[arg(long, value_enum, conflicts_with = "cell")]
     pub(crate) unit: Option<Unit>,
-    /// The query: collision, distance, tolerance=METRES, point (the collision point and its link) or contacts (all triangles
-    /// that touch)
+    /// The query: collision, distance, tolerance=METRES, point (the collision point and its link), contacts (all triangles
+    /// that touch) or time (the first contact of the motion from each state to the next)
     #[arg(long, value_name = "WHAT")]
     pub(crate) ask: QueryKind,
     /// Joint states (a header of joint names, then a row of radians or metres per state; - is standard input);
     /// default: the start state
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) states: Option<PathBuf>,
-    /// Resolution level: auto, L1, L2, L3, capsule or hull. All except auto and L3 are conservative
-    #[arg(long, default_value = "auto")]
-    pub(crate) level: Level,
+    #[command(flatten)]
+    pub(crate) effort: EffortArgs,
     /// A file of pairs that may touch, and of weights (docs/query.md); beside the cell's own
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) pairs: Option<PathBuf>,
@@ -218,6 +218,26 @@ pub(crate) struct QueryArgs {
     /// Print one JSON document instead of CSV
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// How a query finds its answers.
+#[derive(Debug, Args)]
+pub(crate) struct EffortArgs {
+    /// Resolution level: auto, L1, L2, L3, capsule or hull. All except auto and L3 are conservative
+    #[arg(long, default_value = "auto")]
+    pub(crate) level: Level,
+    /// With --level auto: the coarsest level that may answer, L1, L2 or L3; answers stay the same
+    #[arg(long, value_name = "LEVEL", default_value = "L1")]
+    pub(crate) start: Level,
+    /// Test pairs also if they are proven out of reach of each other; answers stay the same
+    #[arg(long)]
+    pub(crate) no_matrix: bool,
+    /// Test pairs in the order of the links, not the likeliest first; of several contacts another may be named
+    #[arg(long)]
+    pub(crate) no_weights: bool,
+    /// Also print the time per state and the levels that answered, on standard error or in the JSON document
+    #[arg(long)]
+    pub(crate) times: bool,
 }
 
 #[derive(Debug, Args)]

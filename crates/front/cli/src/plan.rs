@@ -3,16 +3,14 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use elbowroom::cell::{Cell, QUATERNION_TOLERANCE, TcpTarget};
-use elbowroom::kinematics::inverse::ConfigurationChoice;
-use elbowroom::query::plan::{self, PathAnswer, PathGoal, PathPlanner, PathRequest};
-use elbowroom::spatial::{Pose, Rotation, Vec3};
+use elbowroom::cell::Cell;
+use elbowroom::query::plan::{self, PathAnswer, PathPlanner, PathRequest, PointPath};
 
-use crate::arg_values::{Configuration, Numbers};
 use crate::carry;
 use crate::output::{ExitStatus, Failure, note, print, print_json};
 use crate::output_file::write_file;
 use crate::plan_args::{PlanArgs, Planner};
+use crate::plan_goal::{at_most_one, goal, tcp_motion};
 use crate::plan_request::{configuration, settings};
 use crate::{plan_problems, plan_report, plan_several};
 
@@ -28,6 +26,7 @@ pub(crate) fn plan(args: &PlanArgs) -> Result<ExitStatus, Failure> {
     }
     let request = PathRequest {
         planner: planner(args)?,
+        tcp_motion: tcp_motion(args, &cell),
         robot: args.robot.first().cloned(),
         from: at_most_one(args, "--from", &args.from)?
             .map(|from| configuration(args, &cell, None, from))
@@ -70,78 +69,6 @@ fn planner(args: &PlanArgs) -> Result<PathPlanner, Failure> {
     }
 }
 
-/// Returns the value of an option that takes one value per robot; an error if there are several.
-fn at_most_one<'a, T>(args: &PlanArgs, option: &str, given: &'a [T]) -> Result<Option<&'a T>, Failure> {
-    if given.len() > 1 {
-        let (count, robots) = (given.len(), args.robot.len());
-        let what =
-            format!("{option} is given {count} times, --robot {robots} times: for several robots name each of them");
-        return Err(Failure::Wrong(format!("{what}\n  write: --robot a --to q,… --robot b --to q,…")));
-    }
-    Ok(given.first())
-}
-
-fn goal(args: &PlanArgs, cell: &Cell) -> Result<PathGoal, Failure> {
-    if let Some(Numbers(numbers)) = &args.to_pose {
-        return tcp_target(args, cell, numbers).map(PathGoal::Tcp);
-    }
-    // clap requires a goal.
-    let none = Configuration::Values(Vec::new());
-    let to = at_most_one(args, "--to", &args.to)?.unwrap_or(&none);
-    configuration(args, cell, None, to).map(PathGoal::Joints)
-}
-
-/// Reads the pose and the wanted solution of inverse kinematics.
-fn tcp_target(args: &PlanArgs, cell: &Cell, numbers: &[f64]) -> Result<TcpTarget, Failure> {
-    let in_world = pose(cell, numbers)?;
-    let near = args.near.as_ref().map(|near| near_values(args, cell, near)).transpose()?;
-    let words = args.configuration.iter().map(String::as_str);
-    let configuration = ConfigurationChoice::from_words(words)
-        .map_err(|e| Failure::Wrong(format!("--configuration: {e}\n  write: --configuration front,up,no_flip")))?;
-    let (_, robot) = plan::select_robot(cell, args.robot.first().map(String::as_str))?;
-    if !configuration.is_open() && robot.ik_solver().configuration(&robot.start).is_none() {
-        let what = format!("--configuration: robot \"{}\" has not six axes with a spherical wrist", robot.name);
-        return Err(Failure::Wrong(format!("{what}\n  write: --near q,…   (the nearest solution to them is taken)")));
-    }
-    Ok(TcpTarget { in_world, configuration, near })
-}
-
-fn near_values(args: &PlanArgs, cell: &Cell, near: &Configuration) -> Result<Vec<f64>, Failure> {
-    let q = configuration(args, cell, None, near)?;
-    let (_, robot) = plan::select_robot(cell, args.robot.first().map(String::as_str))?;
-    let joints = robot.joint_names();
-    if q.len() == joints.len() {
-        return Ok(q);
-    }
-    let what = format!("--near has {} values for {} joints", q.len(), joints.len());
-    Err(Failure::Wrong(format!("{what}\n  write: one value per joint, in this order: {}", joints.join(", "))))
-}
-
-/// Reads a pose: x, y, z and roll, pitch, yaw, or a quaternion x, y, z, w.
-fn pose(cell: &Cell, numbers: &[f64]) -> Result<Pose, Failure> {
-    let wrong =
-        |what: &str| Failure::Wrong(format!("--to-pose: {what}\n  write: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw"));
-    let (Some(&[x, y, z]), turn) = (numbers.first_chunk::<3>(), &numbers[numbers.len().min(3)..]) else {
-        return Err(wrong("fewer than six numbers"));
-    };
-    let at = Vec3::new(x, y, z) * cell.units.length.to_metres(1.0);
-    let rotation = match *turn {
-        [roll, pitch, yaw] => {
-            let [roll, pitch, yaw] = [roll, pitch, yaw].map(|angle| cell.units.angle.to_radians(angle));
-            Rotation::from_rpy(roll, pitch, yaw)
-        }
-        [qx, qy, qz, qw] => {
-            let length = (qx * qx + qy * qy + qz * qz + qw * qw).sqrt();
-            // As in a cell file.
-            let is_unit = (length - 1.0).abs() <= QUATERNION_TOLERANCE;
-            let rotation = Rotation::from_quaternion_xyzw([qx, qy, qz, qw]).filter(|_| is_unit);
-            rotation.ok_or_else(|| wrong(&format!("a quaternion of length {length}, and a rotation has 1")))?
-        }
-        _ => return Err(wrong(&format!("{} numbers", numbers.len()))),
-    };
-    Ok(Pose::new(rotation, at))
-}
-
 /// Formats the table for the terminal. Writing to a String cannot fail.
 fn text(answer: &PathAnswer) -> String {
     let milliseconds = |us: u64| us as f64 / 1000.0;
@@ -161,6 +88,9 @@ fn text(answer: &PathAnswer) -> String {
     let mut out = format!("{}: {legs}, {cost_rad:.4} rad in joint space, {duration_s:.3} s, {stops}\n", answer.robot);
     if let Some(configuration) = answer.configuration {
         let _ = writeln!(out, "ends in the configuration {configuration}");
+    }
+    if let Some(point) = &answer.point {
+        let _ = writeln!(out, "{}", point_text(point));
     }
     let (searched, shortened) = (milliseconds(answer.planning_us), milliseconds(answer.simplify_us));
     if !answer.regions.is_empty() {
@@ -183,4 +113,10 @@ fn text(answer: &PathAnswer) -> String {
     }
     out.push('\n');
     out
+}
+
+fn point_text(point: &PointPath) -> String {
+    let place = |at: Option<&[f64; 3]>| at.map(|at| at.map(|v| format!("{v:.4}")).join(", ")).unwrap_or_default();
+    let (from, to) = (place(point.waypoints_m.first()), place(point.waypoints_m.last()));
+    format!("the point of {} goes {:.3} m from {from} to {to} m", point.link, point.length_m)
 }

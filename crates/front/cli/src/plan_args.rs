@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::arg_values::{Configuration, Numbers, seconds};
+use crate::arg_values::{Configuration, KeptAxisArg, LinkPoint, Numbers, seconds};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -12,6 +12,9 @@ use crate::arg_values::{Configuration, Numbers, seconds};
   elbowroom plan cell.toml --robot arm --from -0.5,0,0,0,0,0 --to 0.5,0,0,0,0,0 --json
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --out path.csv
   elbowroom plan cell.toml --robot arm --from home --to-pose 900,200,700,180,0,0   millimetres and degrees, as in the cell
+  elbowroom plan cell.toml --robot arm --point link_3,0,0,80 --to-point 700,200,900   a point of a link; mm in this cell
+  elbowroom plan cell.toml --robot arm --from home --to-pose 900,200,700,180,0,0 --linear       straight
+  elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --keep z=5            what the gripper holds stays upright
   elbowroom plan cell.toml --robot arm --to 0.5,-0.3,1.2,0,0,0 --clearance 0.02 --time-limit 20
   elbowroom plan cell.toml --robot left --to reach --robot right --to home --out both.csv   both at the same time
   elbowroom plan --urdf arm.urdf --srdf arm.srdf --problems problems.json
@@ -35,19 +38,10 @@ pub(crate) struct PlanArgs {
     /// of one of the robot's `states`, or `start`; default: its `start`
     #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true)]
     pub(crate) from: Vec<Configuration>,
-    /// Goal configuration, as --from
-    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, required_unless_present_any = ["urdf", "to_pose"])]
-    pub(crate) to: Vec<Configuration>,
-    /// Goal as a pose of the TCP in the world, in the cell file's units: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw
-    #[arg(long, value_name = "x,y,z,r,p,y", allow_hyphen_values = true, conflicts_with_all = ["to", "urdf"])]
-    pub(crate) to_pose: Option<Numbers>,
-    /// Arm configuration at --to-pose, for six axes with a spherical wrist: front or back, up or down, `no_flip` or flip, or
-    /// some of them
-    #[arg(long, value_name = "WORD,…", value_delimiter = ',', requires = "to_pose", conflicts_with = "to")]
-    pub(crate) configuration: Vec<String>,
-    /// Use only the solution for --to-pose that is nearest to these joint values, as --from
-    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, requires = "to_pose", conflicts_with = "to")]
-    pub(crate) near: Option<Configuration>,
+    #[command(flatten)]
+    pub(crate) goal: GoalArgs,
+    #[command(flatten)]
+    pub(crate) tcp: TcpArgs,
     /// --from and --to are in the cell file's units, as in a program
     #[arg(long, conflicts_with = "urdf")]
     pub(crate) cell_units: bool,
@@ -70,6 +64,43 @@ pub(crate) struct PlanArgs {
     /// Print one JSON document instead of a table
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Where a path ends.
+#[derive(Debug, Args)]
+pub(crate) struct GoalArgs {
+    /// Goal configuration, as --from
+    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, required_unless_present_any = ["urdf", "to_pose", "to_point"])]
+    pub(crate) to: Vec<Configuration>,
+    /// Goal as a pose of the TCP in the world, in the cell file's units: x,y,z,roll,pitch,yaw or x,y,z,qx,qy,qz,qw
+    #[arg(long, value_name = "x,y,z,r,p,y", allow_hyphen_values = true, conflicts_with_all = ["to", "urdf"])]
+    pub(crate) to_pose: Option<Numbers>,
+    /// Arm configuration at --to-pose, for six axes with a spherical wrist: front or back, up or down, `no_flip` or flip, or
+    /// some of them
+    #[arg(long, value_name = "WORD,…", value_delimiter = ',', requires = "to_pose", conflicts_with = "to")]
+    pub(crate) configuration: Vec<String>,
+    /// Use only the solution for --to-pose that is nearest to these joint values, as --from
+    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, requires = "to_pose", conflicts_with = "to")]
+    pub(crate) near: Option<Configuration>,
+    /// Goal of a point: the link it belongs to, and its coordinates in the link's frame, in the cell file's units
+    /// (`inspect --at` has its chain)
+    #[arg(long, value_name = "LINK,x,y,z", allow_hyphen_values = true, requires = "to_point")]
+    pub(crate) point: Option<LinkPoint>,
+    /// Where --point ends in the world, in the cell file's units; the link may turn as it likes
+    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, requires = "point", conflicts_with_all = ["to", "to_pose", "urdf"])]
+    pub(crate) to_point: Option<Numbers>,
+}
+
+/// How the TCP moves.
+#[derive(Debug, Args)]
+pub(crate) struct TcpArgs {
+    /// The TCP moves straight to --to-pose, in one posture
+    #[arg(long, requires = "to_pose", conflicts_with_all = ["keep", "configuration", "near", "optimize"])]
+    pub(crate) linear: bool,
+    /// An axis of the TCP keeps the direction that it has at the start, within an angle in the cell file's unit: z=5, or
+    /// 0,0.7,0.7=5
+    #[arg(long, value_name = "AXIS=ANGLE", allow_hyphen_values = true, conflicts_with = "urdf")]
+    pub(crate) keep: Option<KeptAxisArg>,
 }
 
 /// Search options of a path.

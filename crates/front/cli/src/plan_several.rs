@@ -56,15 +56,17 @@ fn robots(cell: &Cell, args: &PlanArgs) -> Result<Vec<RobotPathRequest>, Failure
         Err(Failure::Wrong(format!("{what}\n  write: {example}")))
     };
     let for_one = [
-        (args.to_pose.is_some(), "--to-pose"),
+        (args.goal.to_pose.is_some(), "--to-pose"),
+        (args.goal.to_point.is_some(), "--to-point"),
+        (args.tcp.keep.is_some(), "--keep"),
         (args.search.optimize, "--optimize"),
         (args.search.planner == Planner::Grid, "--planner grid"),
     ];
     if let Some((_, option)) = for_one.iter().find(|(is_given, _)| *is_given) {
         return wrong(format!("{option} is for one robot, and there are {count}"));
     }
-    if args.to.len() != count {
-        return wrong(format!("--to is given {} times for {count} robots: each needs a goal", args.to.len()));
+    if args.goal.to.len() != count {
+        return wrong(format!("--to is given {} times for {count} robots: each needs a goal", args.goal.to.len()));
     }
     if !args.from.is_empty() && args.from.len() != count {
         return wrong(format!(
@@ -75,7 +77,7 @@ fn robots(cell: &Cell, args: &PlanArgs) -> Result<Vec<RobotPathRequest>, Failure
     let one = |(i, robot): (usize, &String)| {
         let of_robot = |given| configuration(args, cell, Some(robot), given);
         let from = args.from.get(i).map(of_robot).transpose()?;
-        Ok(RobotPathRequest { robot: robot.clone(), from, to: of_robot(&args.to[i])? })
+        Ok(RobotPathRequest { robot: robot.clone(), from, to: of_robot(&args.goal.to[i])? })
     };
     args.robot.iter().enumerate().map(one).collect()
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use elbowroom::cell::{Cell, OutOfReachProofs, PairFile, QueryModel};
 use elbowroom::formats::robot::{self, LoadOptions};
 use elbowroom::query::{
-    ContactRecord, ContactRow, Level, Query, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow,
-    QueryStates, evaluate_contacts, evaluate_query,
+    ContactRecord, ContactRow, Level, MotionRecord, MotionRow, Query, QueryEffort, QueryKind, QueryPairs,
+    QueryPairsError, QueryRecord, QueryRow, QueryStates, evaluate_contacts, evaluate_motions, evaluate_query,
 };
 use elbowroom::scene::{Checker, CheckerOptions, Scene, SceneState};
 use elbowroom::spatial::units::LengthUnit;
@@ -15,6 +15,7 @@ use crate::args::QueryArgs;
 use crate::carry;
 use crate::output::{ExitStatus, Failure, note, print};
 use crate::progress::Progress;
+use crate::query_times::QueryTimes;
 use crate::states;
 
 /// A tolerance (m) above this value is probably in another unit.
@@ -24,14 +25,8 @@ const DOUBTFUL_TOLERANCE_M: f64 = 2.0;
 const MANY: usize = 1000;
 
 pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
-    if args.all_pairs.is_some() && args.ask != QueryKind::Distance {
-        return Err(Failure::Wrong("--all-pairs lists distances\n  write: --ask distance --all-pairs 0.1".to_owned()));
-    }
-    let is_exact = matches!(args.level, Level::Auto | Level::L3);
-    if !is_exact && matches!(args.ask, QueryKind::Point | QueryKind::Contacts) {
-        let what = "points and contacts are those of the exact geometry\n  write: --level auto, or none";
-        return Err(Failure::Wrong(what.to_owned()));
-    }
+    check_combination(args)?;
+    let effort = &args.effort;
     let (mut model, cell) = query_model(args)?;
     if let Some(cell) = &cell {
         model.carried.extend(carry::attachments(cell, &args.carry)?);
@@ -49,8 +44,13 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
         Some(path) => states::read(path, &model)?,
         None => QueryStates::start(&model),
     };
+    if args.ask == QueryKind::Time && states.len() < 2 {
+        let what = "--ask time is about the motion from each state to the next\n  write: --states FILE.csv with two rows or more";
+        return Err(Failure::Wrong(what.to_owned()));
+    }
     states.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let proofs = if states.len() >= MANY { OutOfReachProofs::Compute } else { OutOfReachProofs::Omit };
+    let is_worth_it = !effort.no_matrix && (states.len() >= MANY || effort.times);
+    let proofs = if is_worth_it { OutOfReachProofs::Compute } else { OutOfReachProofs::Omit };
     let scene = model.scene(proofs)?;
     let start = model.start_state(&scene)?;
     if has_no_pair(&scene, &start, &pairs) {
@@ -58,26 +58,67 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     }
     let mut writer = Writer::new(args, &model, states.len());
     writer.begin()?;
-    let mut outcome = Ok(());
-    let query = Query { kind: args.ask, level: args.level, pairs: &pairs, all_pairs_m: args.all_pairs, start: &start };
-    if args.ask == QueryKind::Contacts {
-        evaluate_contacts(&scene, &states, &query, &mut |rows| {
-            outcome = writer.rows(rows.iter().map(|row| WrittenRow::contact(row, &model)));
-            outcome.is_ok()
-        })?;
-    } else {
-        evaluate_query(&scene, &states, &query, &mut |rows| {
-            outcome = writer.rows(rows.iter().map(|row| WrittenRow::state(row, &model)));
-            outcome.is_ok()
-        })?;
-    }
-    outcome?;
-    writer.end()?;
+    let options = CheckerOptions {
+        level: effort.level,
+        start: effort.start,
+        weights: !effort.no_weights,
+        matrix: !effort.no_matrix,
+    };
+    let (kind, all_pairs_m, is_timed) = (args.ask, args.all_pairs, effort.times);
+    let query = Query { kind, options, is_timed, pairs: &pairs, all_pairs_m, start: &start };
+    let effort = answer((&scene, &model), &states, &query, &mut writer)?;
+    writer.end(effort)?;
     Ok(if args.ask == QueryKind::Collision && writer.colliding > 0 {
         ExitStatus::NegativeResult
     } else {
         ExitStatus::Success
     })
+}
+
+/// Answers the states, and prints the rows.
+fn answer(
+    (scene, model): (&Scene, &QueryModel),
+    states: &QueryStates,
+    query: &Query<'_>,
+    writer: &mut Writer<'_>,
+) -> Result<QueryEffort, Failure> {
+    let mut outcome = Ok(());
+    let effort = match query.kind {
+        QueryKind::Contacts => evaluate_contacts(scene, states, query, &mut |rows| {
+            outcome = writer.rows(rows.iter().map(|row| WrittenRow::contact(row, model)));
+            outcome.is_ok()
+        })?,
+        QueryKind::Time => evaluate_motions(scene, states, query, &mut |rows| {
+            outcome = writer.rows(rows.iter().map(|row| WrittenRow::motion(row, model)));
+            outcome.is_ok()
+        })?,
+        _ => evaluate_query(scene, states, query, &mut |rows| {
+            outcome = writer.rows(rows.iter().map(|row| WrittenRow::state(row, model)));
+            outcome.is_ok()
+        })?,
+    };
+    outcome.map(|()| effort)
+}
+
+/// Refuses options that do not go together.
+fn check_combination(args: &QueryArgs) -> Result<(), Failure> {
+    if args.all_pairs.is_some() && args.ask != QueryKind::Distance {
+        return Err(Failure::Wrong("--all-pairs lists distances\n  write: --ask distance --all-pairs 0.1".to_owned()));
+    }
+    let effort = &args.effort;
+    let is_exact = matches!(effort.level, Level::Auto | Level::L3);
+    if !is_exact && matches!(args.ask, QueryKind::Point | QueryKind::Contacts) {
+        let what = "points and contacts are those of the exact geometry\n  write: --level auto, or none";
+        return Err(Failure::Wrong(what.to_owned()));
+    }
+    if !matches!(effort.start, Level::L1 | Level::L2 | Level::L3)
+        || effort.start != Level::L1 && effort.level != Level::Auto
+    {
+        let what =
+            format!("--start {}: is the first level of --level auto\n  write: --start L1, L2 or L3", effort.start);
+        return Err(Failure::Wrong(what));
+    }
+    Ok(())
 }
 
 /// Warns that a tolerance may be in another unit.
@@ -150,6 +191,7 @@ struct WrittenRow {
 enum Record {
     State(Box<QueryRecord>),
     Contact(Box<ContactRecord>),
+    Motion(Box<MotionRecord>),
 }
 
 impl WrittenRow {
@@ -161,6 +203,11 @@ impl WrittenRow {
     fn contact(row: &ContactRow, model: &QueryModel) -> Self {
         Self { index: row.index, collides: true, record: Record::Contact(Box::new(ContactRecord::of(row, model))) }
     }
+
+    fn motion(row: &MotionRow, model: &QueryModel) -> Self {
+        let record = Record::Motion(Box::new(MotionRecord::of(row, model)));
+        Self { index: row.index, collides: row.hit.is_some(), record }
+    }
 }
 
 impl Record {
@@ -168,6 +215,7 @@ impl Record {
         match self {
             Self::State(record) => record.csv(),
             Self::Contact(record) => record.csv(),
+            Self::Motion(record) => record.csv(),
         }
     }
 }
@@ -194,8 +242,11 @@ impl<'a> Writer<'a> {
 
     fn begin(&self) -> Result<(), Failure> {
         if !self.args.json {
-            let is_contacts = self.args.ask == QueryKind::Contacts;
-            let header = if is_contacts { ContactRecord::HEADER } else { QueryRecord::HEADER };
+            let header = match self.args.ask {
+                QueryKind::Contacts => ContactRecord::HEADER,
+                QueryKind::Time => MotionRecord::HEADER,
+                _ => QueryRecord::HEADER,
+            };
             return print(&format!("{header}\n"));
         }
         let (ask, tolerance) = match self.args.ask {
@@ -204,9 +255,10 @@ impl<'a> Writer<'a> {
             QueryKind::Tolerance(t) => ("tolerance", Some(t)),
             QueryKind::Point => ("point", None),
             QueryKind::Contacts => ("contacts", None),
+            QueryKind::Time => ("time", None),
         };
         let file = json(&self.model.file.display().to_string())?;
-        let level = self.args.level;
+        let level = self.args.effort.level;
         let (ask, tolerance, states) = (json(&ask)?, json(&tolerance)?, self.states);
         print(&format!(
             "{{\n\"model\": {file},\n\"ask\": {ask},\n\"tolerance_m\": {tolerance},\n\"level\": \"{level}\",\n\
@@ -237,9 +289,17 @@ impl<'a> Writer<'a> {
         print(&text)
     }
 
-    fn end(&self) -> Result<(), Failure> {
+    fn end(&self, effort: QueryEffort) -> Result<(), Failure> {
         self.progress.end();
-        if self.args.json { print(&format!("\n],\n\"colliding\": {}\n}}\n", self.colliding)) } else { Ok(()) }
+        let times = self.args.effort.times.then(|| QueryTimes::of(effort));
+        if self.args.json {
+            let times = times.map_or(Ok(String::new()), |t| json(&t).map(|t| format!(",\n\"times\": {t}")))?;
+            return print(&format!("\n],\n\"colliding\": {}{times}\n}}\n", self.colliding));
+        }
+        if let Some(times) = times {
+            note(format_args!("{times}"));
+        }
+        Ok(())
     }
 }
 

@@ -197,3 +197,82 @@ fn forbidden_regions_are_obstacles_and_are_named() {
     let refused = plan(&cell, &["--robot", "arm", "--from", "-1,0.1", "--to", "0,0"]).expect(2);
     assert!(refused.stderr.contains("goal") && refused.stderr.contains("region `press`"), "{}", refused.stderr);
 }
+
+/// A point in the middle of the second link goes to a place where only the elbow can bring it, around the ball.
+#[test]
+fn a_point_of_a_link_is_brought_to_a_place() {
+    let go =
+        |more: &[&str], status| plan(CELL, &[&["--robot", "arm", "--from", "-1,0.1"], more].concat()).expect(status);
+    let args = ["--point", "link_2,-100,0,0", "--to-point", "389.7,382.6,0"];
+    let answer = go(&[&args[..], &["--json"]].concat(), 0).json();
+    let point = &answer["point"];
+    assert_eq!(
+        (&point["link"], &point["in_link_m"]),
+        (&serde_json::json!("link_2"), &serde_json::json!([-0.1, 0.0, 0.0]))
+    );
+    assert_eq!(point["moved_by"], serde_json::json!(["joint_1", "joint_2"]));
+    // The place of the point by the geometry of two links.
+    let place = |q: &[f64]| {
+        let [a, b] = [q[0], q[0] + q[1]];
+        [0.4 * a.cos() + 0.2 * b.cos(), 0.4 * a.sin() + 0.2 * b.sin(), 0.0]
+    };
+    let waypoints = answer["waypoints"].as_array().unwrap();
+    let places = point["waypoints_m"].as_array().unwrap();
+    assert!(waypoints.len() > 2 && places.len() == waypoints.len());
+    for (q, at) in waypoints.iter().zip(places) {
+        assert!(place(&numbers(q)).iter().zip(numbers(at)).all(|(a, b)| (a - b).abs() < 1e-9), "{answer}");
+    }
+    let end = numbers(&places[places.len() - 1]);
+    assert!((end[0] - 0.3897).hypot(end[1] - 0.3826) < 1e-6, "{end:?}");
+    let chord = (numbers(&places[0])[0] - end[0]).hypot(numbers(&places[0])[1] - end[1]);
+    assert!(point["length_m"].as_f64().unwrap() > chord);
+    assert!(go(&args, 0).stdout.contains("the point of link_2 goes "));
+    // As `query` names the link.
+    go(&["--point", "arm/link_2,-100,0,0", "--to-point", "389.7,382.6,0"], 0);
+
+    let refused = |point: &str, to: &str| go(&["--point", point, "--to-point", to], 2).stderr;
+    let text = refused("link_7,0,0,0", "300,300,0");
+    assert!(text.contains("no link \"link_7\"") && text.contains("write: "), "{text}");
+    let text = refused("link_2,0,0,0", "900,300,0");
+    assert!(text.contains("does not get there") && text.contains("mm away"), "{text}");
+    let text = refused("link_2,-100,0,0", "0.3897,0.3826,0");
+    assert!(text.contains("m seem to be meant"), "{text}");
+    let text = refused("base,0,0,0", "0,0,900");
+    assert!(text.contains("no joint moves `base`"), "{text}");
+    assert!(refused("link_2,0,0", "0,0,900").contains("write LINK,x,y,z"));
+    assert!(refused("link_2,0,0,0", "0,900").contains("--to-point has 2 numbers"));
+    let both = ["--point", "link_2,0,0,0", "--to-point", "0,900,0", "--to", "1,0"];
+    assert!(go(&both, 2).stderr.contains("cannot be used with"));
+    assert!(go(&["--point", "link_2,0,0,0"], 2).stderr.contains("--to-point"));
+}
+
+/// The arm's tip moves straight; and with an axis that is kept, which a planar arm always keeps.
+#[test]
+fn the_tcp_moves_straight_or_keeps_an_axis() {
+    let go =
+        |more: &[&str], status| plan(CELL, &[&["--robot", "arm", "--from", "-1,1.4"], more].concat()).expect(status);
+    // The tip of two links, 400 and 300 mm.
+    let tip = |q: &[f64]| [0.4 * q[0].cos() + 0.3 * (q[0] + q[1]).cos(), 0.4 * q[0].sin() + 0.3 * (q[0] + q[1]).sin()];
+    let at = tip(&[-1.0, 1.4]);
+    let target = format!("{},{},0,0,0,{}", 1e3 * at[0] - 60.0, 1e3 * at[1], 0.4_f64.to_degrees());
+    // Two joints cannot keep the orientation on a line.
+    let refused = go(&["--to-pose", &target, "--linear", "--json"], 1).json();
+    assert!(
+        refused["found"] == false && refused["reason"].as_str().unwrap().contains("the straight line can be followed")
+    );
+    let kept = go(&["--to", "1,-.1", "--keep", "z=5", "--json"], 0).json();
+    assert!(kept["found"] == true && kept["waypoints"].as_array().unwrap().len() > 2);
+    let turned = go(&["--to", "1,-.1", "--keep", "x=5"], 2).stderr;
+    assert!(turned.contains("5.0° are allowed") && turned.contains("wider angle"), "{turned}");
+    for (args, expected) in [
+        (&["--to", "1,0", "--linear"][..], "leads to a pose"),
+        (&["--to-pose", &target, "--linear", "--keep", "z=5"], "cannot be used with"),
+        (&["--to", "1,0", "--keep", "z"], "AXIS=ANGLE"),
+        (&["--to", "1,0", "--keep", "z=0"], "not above 0"),
+        (&["--to", "1,0", "--keep", "1,2=5"], "AXIS=ANGLE"),
+        (&["--to", "1,0", "--keep", "0,0,0=5"], "no direction"),
+    ] {
+        let text = go(args, 2).stderr;
+        assert!(text.contains(expected), "{args:?}: {text}");
+    }
+}

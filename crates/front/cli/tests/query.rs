@@ -196,3 +196,89 @@ fn a_robot_alone_uses_bare_names_and_its_root_as_the_world() {
         assert!(coarse <= row[2].parse::<f64>().unwrap() + 1e-12, "{level}");
     }
 }
+
+#[test]
+fn levels_matrix_and_weights_change_the_time_and_not_the_answers() {
+    let dir = tempfile::tempdir().unwrap();
+    let cell = examples().join("inspection/cell.toml");
+    let cell = cell.to_str().unwrap();
+    let mut random = elbowroom_testkit::random::SplitMix(5);
+    let robots = ["one", "two", "three"];
+    let names: Vec<String> =
+        robots.iter().flat_map(|robot| (1..=6).map(move |joint| format!("{robot}.joint_{joint}"))).collect();
+    let mut text = names.join(",");
+    for _ in 0..300 {
+        let row: Vec<String> = names.iter().map(|_| random.between(-1.5, 1.5).to_string()).collect();
+        text = format!("{text}\n{}", row.join(","));
+    }
+    std::fs::write(dir.path().join("q.csv"), text + "\n").unwrap();
+    let ask = |what: &str, switches: &[&str]| {
+        let args = [&["query", cell, "--ask", what, "--states", "q.csv", "--json", "--times"][..], switches].concat();
+        let answer = elbowroom(dir.path(), &args);
+        answer.json()
+    };
+    for (what, key) in [("collision", "collides"), ("distance", "distance_m")] {
+        let all = ask(what, &[]);
+        let column = |answer: &serde_json::Value| -> Vec<serde_json::Value> {
+            answer["rows"].as_array().unwrap().iter().map(|row| row[key].clone()).collect()
+        };
+        for switches in [&["--start", "L3"][..], &["--no-matrix"], &["--no-weights"], &["--start", "L2", "--no-matrix"]]
+        {
+            let other = ask(what, switches);
+            assert_eq!(column(&other), column(&all), "{what} {switches:?}");
+            let times = &other["times"];
+            assert_eq!(times["states"], 300);
+            assert!(times["p50_us"].as_f64().unwrap() <= times["p99_us"].as_f64().unwrap(), "{times}");
+            let is_without = switches.contains(&"--no-matrix");
+            assert_eq!(times["pairs_skipped"].as_u64() == Some(0), is_without, "{switches:?}: {times}");
+            if switches.contains(&"L3") {
+                assert_eq!(keys(&times["answered"]), ["L3"], "{times}");
+            }
+        }
+    }
+    let text = elbowroom(dir.path(), &["query", cell, "--ask", "distance", "--times"]).expect(0);
+    assert!(text.stderr.contains("1 state: ") && text.stderr.contains("answered by L3 1"), "{}", text.stderr);
+    for wrong in [&["--start", "hull"][..], &["--start", "L2", "--level", "L3"]] {
+        let refused = elbowroom(dir.path(), &[&["query", cell, "--ask", "distance"], wrong].concat()).expect(2);
+        assert!(refused.stderr.contains("--start L1, L2 or L3"), "{}", refused.stderr);
+    }
+}
+
+/// The arm turns from beside the ball into it, and from there away.
+#[test]
+fn time_is_the_share_of_a_motion_that_is_free() {
+    let states = Some("joint_1,joint_2\n1.5,0\n0,0\n1.5,0\n1.4,0\n");
+    let answer = query(CELL, states, &["--ask", "time"]).expect(0);
+    let lines: Vec<&str> = answer.stdout.lines().collect();
+    assert_eq!((lines.len(), lines[0]), (4, "index,collides,free_share,a,b,ax,ay,az,bx,by,bz,certain"));
+    let (into, out, beside) = (cells(lines[1]), cells(lines[2]), cells(lines[3]));
+    assert_eq!((into[0], into[1], into[3], into[4], into[11]), ("0", "1", "arm/link_2", "ball", "1"));
+    let share: f64 = into[2].parse().unwrap();
+    // Just before it the arm is free, just after it not.
+    let at = |share: f64| format!("joint_1,joint_2\n{},0\n", 1.5 * (1.0 - share));
+    query(CELL, Some(&at(share - 1e-3)), &["--ask", "collision"]).expect(0);
+    query(CELL, Some(&at(share + 1e-3)), &["--ask", "collision"]).expect(1);
+    assert_eq!(out[..5], ["1", "1", "0.0", "arm/link_2", "ball"]);
+    assert_eq!(beside[..], ["2", "0", "1.0", "", "", "", "", "", "", "", "", "1"]);
+    let json = query(CELL, states, &["--ask", "time", "--json"]).expect(0).json();
+    assert_eq!((&json["ask"], &json["colliding"]), (&"time".into(), &2.into()));
+    assert!((json["rows"][0]["free_share"].as_f64().unwrap() - share).abs() < 1e-15);
+    let refused = query(CELL, None, &["--ask", "time"]).expect(2).stderr;
+    assert!(refused.contains("two rows or more"), "{refused}");
+}
+
+/// The JSON of a collision point has its place in the frame of the link, as `inspect --at` and `plan --point` take it.
+#[test]
+fn a_collision_point_is_told_in_the_frame_of_its_link() {
+    let states = Some("joint_1,joint_2\n0.1,-0.1\n1.5,0\n");
+    let json = query(CELL, states, &["--ask", "point", "--json"]).expect(0).json();
+    let row = &json["rows"][0];
+    let number = |v: &serde_json::Value| v.as_f64().unwrap();
+    let [x, y, z] = [0, 1, 2].map(|i| number(&row["point_in_a_m"][i]));
+    // Two links of 400 and 300 mm; the sum of the angles is 0.
+    let at = [0.4 * 0.1_f64.cos() + 0.3 + x, 0.4 * 0.1_f64.sin() + y, z];
+    for (key, value) in ["ax", "ay", "az"].into_iter().zip(at) {
+        assert!((number(&row[key]) - value).abs() < 1e-12, "{row}");
+    }
+    assert!(json["rows"][1].get("point_in_a_m").is_none());
+}

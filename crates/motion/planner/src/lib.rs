@@ -47,6 +47,7 @@ mod joint_path;
 mod line_of_sight;
 mod nearest_free_cell;
 mod orientation_constraint;
+mod point_goal;
 mod prioritized_planner;
 mod robot_planner;
 mod rrt_connect;
@@ -60,6 +61,7 @@ pub use grid_path::{GridPath, GridPlannerError, GridPlannerSetting, PathEnd};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
 pub use joint_path::JointPath;
 pub use orientation_constraint::OrientationConstraint;
+pub use point_goal::PointGoal;
 pub use prioritized_planner::{
     PathConstraintSource, PrioritizedMotion, PrioritizedPlanner, PrioritizedPlannerError, RobotGoal,
 };

@@ -5,7 +5,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_validity::CoverSource;
 
-use crate::cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect};
+use crate::cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect, LinearMove};
 use crate::joint_path::JointPath;
 use crate::rrt_connect::{RrtConnect, RrtConnectError, RrtConnectSettings};
 use crate::timed_path::TimedPath;
@@ -85,6 +85,22 @@ impl<'m> RobotPlanner<'m> {
         match self {
             Self::Covers(planner) => Ok(planner.plan_anytime(start, goals, settings)?.path),
             Self::Exact(planner) => planner.plan_to_any(start, goals, settings),
+        }
+    }
+
+    /// Plans a straight line of the tip ([`CoverRrtConnect::plan_linear`]).
+    ///
+    /// # Errors
+    /// The errors of this method, and [`RrtConnectError::LinearMoveWithoutCovers`] without covers.
+    pub fn plan_linear(
+        &mut self,
+        start: &SceneState,
+        line: &LinearMove,
+        settings: &RrtConnectSettings,
+    ) -> Result<JointPath, RrtConnectError> {
+        match self {
+            Self::Covers(planner) => planner.plan_linear(start, line, settings),
+            Self::Exact(_) => Err(RrtConnectError::LinearMoveWithoutCovers),
         }
     }
 

@@ -7,7 +7,7 @@ use crate::common::robots::{Random, cabinet, free_values, state_at, within_limit
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::{
     CoverModel, CoverObstacles, CoverRrtConnect, JointPath, LinearMove, LinearMoveEnd, OrientationConstraint,
-    PathConstraint, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
+    PathConstraint, PointGoal, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
 };
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, SweepOptions};
@@ -111,6 +111,55 @@ fn configurations_of_a_region_have_their_tip_in_it() {
     }
     let far = TaskSpaceRegion::at_pose(link, Pose::IDENTITY, Pose::from_translation(Vec3::X * 9.0));
     assert!(far.configurations(&scene, &start, ROBOT, 0, 1).is_empty());
+}
+
+/// The place of a point, computed by forward kinematics of the whole chain.
+fn place(scene: &Scene, point: &PointGoal, q: &[f64]) -> Vec3 {
+    let r = &scene.robots()[0];
+    let mut state = ChainState::new(&r.robot.chain);
+    state.q.copy_from_slice(q);
+    r.robot.chain.forward(&mut state);
+    (r.base_in_world * state.link_in_root(point.link)).transform_point(point.point_in_link)
+}
+
+#[test]
+fn configurations_of_a_point_have_it_at_its_place_and_paths_reach_one_of_them() {
+    let scene = cabinet();
+    let chain = &scene.robots()[0].robot.chain;
+    let covers = covers(&scene);
+    let mut random = Random(4);
+    let mut reached = 0;
+    for links_before_the_tip in [0, 1, 2, 3, 0, 1, 2, 3] {
+        let from = free_values(&mut random, &scene, ROBOT).unwrap();
+        let start = state_at(&scene, ROBOT, &from);
+        let link = (0..links_before_the_tip)
+            .fold(chain.tip(), |link, _| chain.parent_joint(link).map_or(link, |j| chain.joints()[j.0].parent));
+        let mut point = PointGoal { link, point_in_link: Vec3::new(0.03, -0.04, 0.05), in_world: Vec3::ZERO };
+        point.in_world = place(&scene, &point, &free_values(&mut random, &scene, ROBOT).unwrap());
+        let found = point.configurations(&scene, &start, ROBOT, 32).unwrap();
+        assert!(found.len() > 4, "{}", found.len());
+        let moves = point.moved_by(&scene, ROBOT);
+        let distance = |q: &[f64]| q.iter().zip(&from).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        assert!(found.windows(2).all(|w| distance(&w[0]) <= distance(&w[1])));
+        for q in &found {
+            assert!(within_limits(&scene, ROBOT, q) && place(&scene, &point, q).distance(point.in_world) < 1e-6);
+        }
+        // The joints behind the link need not move.
+        let rests =
+            |q: &Vec<f64>| (0..from.len()).all(|i| moves.contains(&chain.active_joints()[i]) || q[i] == from[i]);
+        assert!(found.iter().any(rests));
+        let path = planner(&scene, &covers).plan_to_any(&start, &found, &settings(200_000));
+        let Ok(path) = path else { continue };
+        assert_free(&scene, &start, &path);
+        assert!(place(&scene, &point, path.waypoints.last().unwrap()).distance(point.in_world) < 1e-6);
+        reached += 1;
+    }
+    assert!(reached >= 6, "{reached}");
+    let far = PointGoal { link: chain.tip(), point_in_link: Vec3::ZERO, in_world: Vec3::X * 9.0 };
+    let start = SceneState::new(&scene);
+    assert!(far.configurations(&scene, &start, ROBOT, 4).unwrap_err().to_string().contains("m and"));
+    let unknown = PointGoal { in_world: Vec3::splat(f64::NAN), ..far };
+    assert!(unknown.configurations(&scene, &start, ROBOT, 4).unwrap_err().to_string().contains("not finite"));
 }
 
 #[test]

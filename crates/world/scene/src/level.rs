@@ -28,7 +28,7 @@ pub enum Level {
 
 impl Level {
     /// The levels with their own models, coarse first.
-    const ANSWERING: [Self; 5] = [Self::L1, Self::L2, Self::Capsule, Self::Hull, Self::L3];
+    pub const ANSWERING: [Self; 5] = [Self::L1, Self::L2, Self::Capsule, Self::Hull, Self::L3];
 }
 
 impl fmt::Display for Level {

@@ -9,6 +9,8 @@ use elbowroom_kinematics::{JointTrajectory, TrajectoryRow};
 use elbowroom_planner::TimedPath;
 use serde::{Serialize, Serializer};
 
+use super::point_path::PointPath;
+
 /// Result of planning.
 ///
 /// Serialized as one flat document in SI units, without the rows. Without a path, `waypoints` is empty, and the other
@@ -34,6 +36,8 @@ pub struct PathAnswer {
     pub planning_us: u64,
     /// Time of shortcutting, µs.
     pub simplify_us: u64,
+    /// The way of the point that was to be moved; `None` without a path, and for another goal.
+    pub point: Option<PointPath>,
     /// The path and its motion.
     pub timed: Option<TimedPath>,
 }
@@ -50,6 +54,7 @@ impl PathAnswer {
             map_time: None,
             planning_us: micros(took),
             simplify_us: 0,
+            point: None,
             timed: None,
         }
     }
@@ -65,6 +70,7 @@ impl PathAnswer {
             map_time: None,
             planning_us: micros(timed.path.planning_time),
             simplify_us: micros(timed.path.simplification_time),
+            point: None,
             timed: Some(timed),
         }
     }
@@ -84,6 +90,8 @@ impl Serialize for PathAnswer {
             cost_rad: Option<f64>,
             duration_s: Option<f64>,
             stops: Option<usize>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            point: Option<&'a PointPath>,
             map_us: Option<u64>,
             planning_us: u64,
             simplify_us: u64,
@@ -100,6 +108,7 @@ impl Serialize for PathAnswer {
             cost_rad: timed.map(|t| t.path.length_rad),
             duration_s: timed.map(|t| t.trajectory.duration_s()),
             stops: timed.map(|t| t.stops),
+            point: self.point.as_ref(),
             map_us: self.map_time.map(micros),
             planning_us: self.planning_us,
             simplify_us: self.simplify_us,

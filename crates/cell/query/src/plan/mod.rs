@@ -7,53 +7,36 @@
 mod answer;
 mod map_planner;
 mod on_map;
+mod path_goal;
 mod path_query;
+mod point_path;
 pub(crate) mod request_validation;
 mod several;
+mod tcp_motion;
 
 use std::time::Instant;
 
 use elbowroom_cell::region_constraint::RegionConstraint;
-use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, TcpTarget, region_constraint};
+use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, region_constraint};
 use elbowroom_formats::Diagnostic;
-use elbowroom_planner::{
-    CoverModels, CoverObstacles, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
-};
+use elbowroom_planner::{CoverModels, CoverObstacles, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene, SceneState};
 use elbowroom_spatial::Pose;
-use elbowroom_spatial::units::LengthUnit;
 
 use crate::cover_cache::CoverCache;
 use on_map::MapQuery;
+use path_goal::goals;
 use path_query::Query;
 
 pub use answer::{PathAnswer, write_csv};
 pub use elbowroom_cell::PathPlanner;
 pub use map_planner::{MapPlanner, MapPlannerError};
+pub use path_goal::PathGoal;
+pub use point_path::PointPath;
 pub use request_validation::select_robot;
 pub use several::{RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
-
-/// Goal of a path.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PathGoal {
-    /// Values of all joints in the order of the chain, rad or m.
-    Joints(Vec<f64>),
-    /// A pose of the TCP: the first solution of inverse kinematics that the target accepts and that is reached.
-    Tcp(TcpTarget),
-}
-
-impl Default for PathGoal {
-    fn default() -> Self {
-        Self::Joints(Vec::new())
-    }
-}
-
-impl<Q: Into<Vec<f64>>> From<Q> for PathGoal {
-    fn from(q: Q) -> Self {
-        Self::Joints(q.into())
-    }
-}
+pub use tcp_motion::{KeptAxis, TcpMotion};
 
 /// A request for a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,6 +49,8 @@ pub struct PathRequest {
     pub to: PathGoal,
     /// The planner.
     pub planner: PathPlanner,
+    /// How the TCP moves.
+    pub tcp_motion: TcpMotion,
     /// Fraction of the joints' speeds that the motion uses, above 0 and at most 1.
     pub speed: f64,
     /// Time limit, clearance and seed.
@@ -88,6 +73,7 @@ impl Default for PathRequest {
             from: None,
             to: PathGoal::default(),
             planner: PathPlanner::default(),
+            tcp_motion: TcpMotion::default(),
             speed: 1.0,
             options,
             period_s: None,
@@ -137,22 +123,28 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, Diagnostic
     let scene = QueryModel::of_cell(cell).scene(OutOfReachProofs::Omit)?;
     let refused = |e: RrtConnectError| request_validation::planner_error(cell, robot, &e);
     let state = start_state(cell, &scene, id, from, request).map_err(|e| refused(e.into()))?;
-    let goals = goals(cell, &scene, &state, id, &request.to, request.options.seed)?;
+    let is_searched = request.planner == PathPlanner::Grid || request.optimize;
+    let line = tcp_motion::line(cell, robot, request.tcp_motion, &request.to, is_searched)?;
+    let goals = match line {
+        Some(_) => Vec::new(),
+        None => goals(cell, &scene, &state, id, &request.to, request.options.seed)?,
+    };
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
     let (covers, mut models) = (CoverCache::of_user(), CoverModels::default());
     let is_on_map = request.planner == PathPlanner::Grid;
     let model = if is_on_map { None } else { models.serving(&scene, &state, id, clearance_m, &covers) };
     let obstacles = model.map(|model| CoverObstacles::with_covers(model, &scene, &state, clearance_m, &covers));
     let period_s = request.period_s.unwrap_or(cell.timing.tick_s);
-    region_constraint::at_start(cell, id, from, &request.carried, clearance_m, |constraint| {
+    let answer = region_constraint::at_start(cell, id, from, &request.carried, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
         let mut exact = RrtConnect::new(&scene, id).map_err(|e| refused(e.into()))?;
-        if let Some(constraint) = constraint {
-            exact = exact.with_constraint(constraint);
+        let constraints = tcp_motion::constraints(cell, &scene, (id, from), request.tcp_motion, constraint)?;
+        if !constraints.is_empty() {
+            exact = exact.with_constraint(constraints);
         }
         let (settings, optimize) = (&request.options, request.optimize);
         let query =
-            Query { scene: &scene, state: &state, goals: &goals, settings, limits: &limits, period_s, optimize };
+            Query { scene: &scene, state: &state, goals: &goals, settings, limits: &limits, period_s, optimize, line };
         if is_on_map {
             let answer = MapQuery { cell, id, query, regions: &regions }.plan(exact)?;
             return Ok(PathAnswer { regions, ..answer });
@@ -160,56 +152,22 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, Diagnostic
         let begin = Instant::now();
         let answer = match query.plan(RobotPlanner::new(exact, model.zip(obstacles.as_ref()))) {
             Ok(timed) => PathAnswer::found(robot, timed),
-            Err(e @ (RrtConnectError::NotFound { .. } | RrtConnectError::Disconnected { .. })) => {
-                PathAnswer::none(robot, begin.elapsed(), e.to_string())
-            }
+            Err(e) if is_no_path(&e) => PathAnswer::none(robot, begin.elapsed(), e.to_string()),
             Err(e) => return Err(refused(e)),
         };
         Ok(PathAnswer { regions, ..answer })
-    })
-}
-
-/// The configurations at which a path may end.
-fn goals(
-    cell: &Cell,
-    scene: &Scene,
-    state: &SceneState,
-    id: RobotId,
-    to: &PathGoal,
-    seed: u64,
-) -> Result<Vec<Vec<f64>>, Diagnostic> {
-    let robot = &cell.robots[id.0];
-    let target = match to {
-        PathGoal::Joints(q) => {
-            request_validation::check_joint_values(cell, robot, "goal", q)?;
-            return Ok(vec![q.clone()]);
-        }
-        PathGoal::Tcp(target) => target,
+    })?;
+    let point = match (&request.to, &answer.timed) {
+        (PathGoal::Point(point), Some(timed)) => Some(PointPath::of(&scene, (id, robot), point, timed)),
+        _ => None,
     };
-    let region = TaskSpaceRegion::at_pose(robot.flange, robot.tcp_in_flange, target.in_world);
-    let found = region.configurations(scene, state, id, 0, seed);
-    target.choose(robot, cell.units, state.q(id), found).map_err(|why| {
-        let what = format!("the goal of robot \"{}\": {why}", robot.name);
-        let is_reached = |pose: Pose| {
-            let region = TaskSpaceRegion::at_pose(robot.flange, robot.tcp_in_flange, pose);
-            !region.configurations(scene, state, id, 0, seed).is_empty()
-        };
-        let hint = other_unit(cell, &target.in_world, is_reached);
-        let hint = hint.unwrap_or_else(|| "a pose within reach, or joint values".to_owned());
-        Diagnostic::new(&cell.file, robot.line, what).hint(hint)
-    })
+    Ok(PathAnswer { point, ..answer })
 }
 
-/// The pose in the cell's unit of length, if its numbers are within reach in another unit, which was probably meant.
-fn other_unit(cell: &Cell, in_world: &Pose, is_reached: impl Fn(Pose) -> bool) -> Option<String> {
-    let factor = |unit: LengthUnit| unit.to_metres(1.0) / cell.units.length.to_metres(1.0);
-    let meant = [LengthUnit::Metre, LengthUnit::Millimetre]
-        .into_iter()
-        .filter(|unit| *unit != cell.units.length)
-        .find(|unit| is_reached(Pose { translation: in_world.translation * factor(*unit), ..*in_world }))?;
-    let numbers = (in_world.translation * factor(meant)).to_array().map(|metres| cell.units.in_file_units(metres));
-    let (meant, unit) = (meant.symbol(), cell.units.length.symbol());
-    Some(format!("{},…   (in {unit}, the cell's unit; {meant} seem to be meant)", numbers.join(",")))
+/// Whether the request was right, and there is no path or none was found.
+fn is_no_path(e: &RrtConnectError) -> bool {
+    use RrtConnectError::{Disconnected, LinearMove, LinearMoveWithoutCovers, NotFound};
+    matches!(e, NotFound { .. } | Disconnected { .. } | LinearMove { .. } | LinearMoveWithoutCovers)
 }
 
 /// The state with all robots at their start, except one.

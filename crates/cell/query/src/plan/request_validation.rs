@@ -114,8 +114,12 @@ pub(super) fn planner_error(cell: &Cell, robot: &CellRobot, e: &RrtConnectError)
         }
         RrtConnectError::ConstraintViolated { end, what, .. } => {
             let no_exit = if *end == PathEnd::Start { ", and no straight path out of it was found" } else { "" };
-            error(format!("{}: in {what}{no_exit}", of(end)))
-                .hint(format!("joint values with all guarded volumes outside of it: another {end}"))
+            let hint = if what.starts_with("region") {
+                format!("joint values with all guarded volumes outside of it: another {end}")
+            } else {
+                format!("another {end}, or a wider angle for the axis that is kept")
+            };
+            error(format!("{}: in {what}{no_exit}", of(end))).hint(hint)
         }
         other => error(other.to_string()),
     }

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
+use std::time::Instant;
 
 use elbowroom_formats::Diagnostic;
 use elbowroom_scene::{
@@ -24,8 +25,10 @@ const WAITING: usize = 8;
 pub struct Query<'q> {
     /// Collision, distance or tolerance.
     pub kind: QueryKind,
-    /// The resolution level.
-    pub level: Level,
+    /// Resolution levels, weights and matrix; all except [`CheckerOptions::level`] change only the time.
+    pub options: CheckerOptions,
+    /// Whether the time of each state is measured.
+    pub is_timed: bool,
     /// The pairs that are tested.
     pub pairs: &'q QueryPairs,
     /// A row for each pair no farther apart than this, m, the nearest first; `None`: a row for each state.
@@ -46,13 +49,32 @@ pub fn evaluate(
     take: &mut dyn FnMut(&[QueryRow]) -> bool,
 ) -> Result<CheckerStats, Diagnostic> {
     let (pairs, start) = (QueryPairs::all(), SceneState::new(scene));
-    evaluate_query(scene, states, &Query { kind, level, pairs: &pairs, all_pairs_m: None, start: &start }, take)
+    let options = CheckerOptions { level, ..CheckerOptions::default() };
+    let query = Query { kind, options, is_timed: false, pairs: &pairs, all_pairs_m: None, start: &start };
+    Ok(evaluate_query(scene, states, &query, take)?.stats)
 }
 
-/// Evaluates a query for every state, and returns the counters of the work for the rows taken.
+/// The work of a query.
+#[derive(Debug, Clone, Default)]
+pub struct QueryEffort {
+    /// Counters of the states whose rows were taken.
+    pub stats: CheckerStats,
+    /// Time of each of these states, without setting the joint values, s; empty unless it was measured.
+    pub times_s: Vec<f64>,
+}
+
+impl QueryEffort {
+    fn add(&mut self, other: Self) {
+        self.stats += other.stats;
+        self.times_s.extend(other.times_s);
+    }
+}
+
+/// Evaluates a query for every state, and returns the work for the rows taken.
 ///
 /// `take` is called with the rows, in order and block by block; it returns whether to continue. [`QueryKind::Contacts`]
-/// is answered like [`QueryKind::Point`]: [`evaluate_contacts`] has its rows.
+/// and [`QueryKind::Time`] are answered like [`QueryKind::Point`]: [`evaluate_contacts`] and
+/// [`evaluate_motions`](super::evaluate_motions) have their rows.
 ///
 /// # Errors
 /// [`Diagnostic`] if a state does not fit the scene. States that were read for the scene's model always fit.
@@ -61,8 +83,8 @@ pub fn evaluate_query(
     states: &QueryStates,
     query: &Query<'_>,
     take: &mut dyn FnMut(&[QueryRow]) -> bool,
-) -> Result<CheckerStats, Diagnostic> {
-    evaluate_blocks(states, &|block| rows_of_block(scene, states, query, block), take)
+) -> Result<QueryEffort, Diagnostic> {
+    evaluate_blocks(states, states.len(), &|block| rows_of_block(scene, states, query, block), take)
 }
 
 /// Like [`evaluate_query`], with the touching triangles of all pairs in contact as rows.
@@ -74,27 +96,28 @@ pub fn evaluate_contacts(
     states: &QueryStates,
     query: &Query<'_>,
     take: &mut dyn FnMut(&[ContactRow]) -> bool,
-) -> Result<CheckerStats, Diagnostic> {
-    evaluate_blocks(states, &|block| contacts_of_block(scene, states, query, block), take)
+) -> Result<QueryEffort, Diagnostic> {
+    evaluate_blocks(states, states.len(), &|block| contacts_of_block(scene, states, query, block), take)
 }
 
-/// The rows of a block, and the counters of the work.
-type BlockRows<R> = Result<(Vec<R>, CheckerStats), SceneError>;
+/// The rows of a block, and the work.
+pub(super) type BlockRows<R> = Result<(Vec<R>, QueryEffort), SceneError>;
 
-/// Evaluates blocks on all cores; `take` receives them in order.
-fn evaluate_blocks<R: Send>(
+/// Evaluates blocks of `count` rows on all cores; `take` receives them in order.
+pub(super) fn evaluate_blocks<R: Send>(
     states: &QueryStates,
+    count: usize,
     rows_of_block: &(dyn Fn(usize) -> BlockRows<R> + Sync),
     take: &mut dyn FnMut(&[R]) -> bool,
-) -> Result<CheckerStats, Diagnostic> {
-    let blocks = states.len().div_ceil(BLOCK);
+) -> Result<QueryEffort, Diagnostic> {
+    let blocks = count.div_ceil(BLOCK);
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(blocks);
     let wrong = |e: SceneError| Diagnostic::new(&states.file, None, e);
-    let mut done = CheckerStats::default();
+    let mut done = QueryEffort::default();
     if cores <= 1 {
         for block in 0..blocks {
-            let (rows, counts) = rows_of_block(block).map_err(wrong)?;
-            done += counts;
+            let (rows, effort) = rows_of_block(block).map_err(wrong)?;
+            done.add(effort);
             if !take(&rows) {
                 break;
             }
@@ -117,15 +140,14 @@ fn evaluate_blocks<R: Send>(
             });
         }
         drop(send);
-        let mut waiting = BTreeMap::new();
-        let mut due = 0;
+        let (mut waiting, mut due) = (BTreeMap::new(), 0);
         for (block, rows) in receive {
             waiting.insert(block, rows);
             while let Some(rows) = waiting.remove(&due) {
                 due += 1;
                 let continues = match rows {
-                    Ok((rows, counts)) => {
-                        done += counts;
+                    Ok((rows, effort)) => {
+                        done.add(effort);
                         take(&rows)
                     }
                     Err(e) => {
@@ -145,14 +167,15 @@ fn evaluate_blocks<R: Send>(
 
 /// The touching triangles of a block.
 fn contacts_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<ContactRow> {
-    let mut checker = Checker::new(scene, CheckerOptions { level: Level::Auto, ..CheckerOptions::default() });
+    let mut checker = Checker::new(scene, CheckerOptions { level: Level::Auto, ..query.options });
     let mut surfaces = ContactSurfaces::new(scene);
     let mut state = query.start.clone();
-    let mut rows = Vec::new();
+    let (mut rows, mut times_s) = (Vec::new(), Vec::new());
     for index in block * BLOCK..states.len().min((block + 1) * BLOCK) {
         for (robot, q) in states.of(index) {
             state.set_q(scene, robot, q)?;
         }
+        let begin = Instant::now();
         let mut pairs = BTreeSet::new();
         for &[a, b] in query.pairs.sides() {
             checker.between(a, b).contacts(&state, |pair| _ = pairs.insert((pair.a, pair.b)));
@@ -160,26 +183,32 @@ fn contacts_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, blo
         for pair in pairs {
             surfaces.contacts(&state, pair.0, pair.1, |contact| rows.push(ContactRow { index, pair, contact }));
         }
+        if query.is_timed {
+            times_s.push(begin.elapsed().as_secs_f64());
+        }
     }
-    Ok((rows, checker.stats()))
+    Ok((rows, QueryEffort { stats: checker.stats(), times_s }))
 }
 
 /// The rows of a block. Likely pairs are tested first; the weights are updated from state to state.
 fn rows_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<QueryRow> {
-    let options = CheckerOptions { level: query.level, ..CheckerOptions::default() };
-    let mut pairs = CheckedPairs { checker: Checker::new(scene, options), sides: query.pairs.sides() };
+    let mut pairs = CheckedPairs { checker: Checker::new(scene, query.options), sides: query.pairs.sides() };
     let mut state = query.start.clone();
-    let mut rows = Vec::with_capacity(BLOCK);
+    let (mut rows, mut times_s) = (Vec::with_capacity(BLOCK), Vec::new());
     for index in block * BLOCK..states.len().min((block + 1) * BLOCK) {
         for (robot, q) in states.of(index) {
             state.set_q(scene, robot, q)?;
         }
+        let begin = Instant::now();
         match query.all_pairs_m {
-            None => rows.push(QueryRow { index, ..pairs.row(&state, query.kind) }),
+            None => rows.push(QueryRow { index, ..pairs.row(scene, &state, query.kind) }),
             Some(margin_m) => rows.extend(pairs.rows_within(&state, margin_m).map(|row| QueryRow { index, ..row })),
         }
+        if query.is_timed {
+            times_s.push(begin.elapsed().as_secs_f64());
+        }
     }
-    Ok((rows, pairs.checker.stats()))
+    Ok((rows, QueryEffort { stats: pairs.checker.stats(), times_s }))
 }
 
 /// The pairs between all sides, treated as one set.
@@ -201,7 +230,7 @@ impl CheckedPairs<'_, '_> {
     }
 
     /// The row of one state; its index is 0.
-    fn row(&mut self, state: &SceneState, kind: QueryKind) -> QueryRow {
+    fn row(&mut self, scene: &Scene, state: &SceneState, kind: QueryKind) -> QueryRow {
         match kind {
             QueryKind::Collision => {
                 let Some(contact) = self.within(state, 0.0) else { return self.nothing() };
@@ -210,11 +239,12 @@ impl CheckedPairs<'_, '_> {
                     distance_m: Some(0.0),
                     pair: Some((contact.a, contact.b)),
                     witness: self.witness_of_contact(state, contact),
+                    point_in_a: None,
                     index: 0,
                     level: contact.level,
                 }
             }
-            QueryKind::Point | QueryKind::Contacts => self.collision_point(state),
+            QueryKind::Point | QueryKind::Contacts | QueryKind::Time => self.collision_point(scene, state),
             QueryKind::Distance => self.distance(state).unwrap_or_else(|| self.nothing()),
             QueryKind::Tolerance(t) => {
                 if self.within(state, t).is_none() {
@@ -228,7 +258,7 @@ impl CheckedPairs<'_, '_> {
     }
 
     /// The collision point of the first sides that have one: `a` is the link that collides.
-    fn collision_point(&mut self, state: &SceneState) -> QueryRow {
+    fn collision_point(&mut self, scene: &Scene, state: &SceneState) -> QueryRow {
         let mut of_sides = |&[a, b]: &[Selection; 2]| self.checker.between(a, b).collision_point(state, Detail::Exact);
         let Some(point) = self.sides.iter().find_map(&mut of_sides) else { return self.nothing() };
         QueryRow {
@@ -236,6 +266,7 @@ impl CheckedPairs<'_, '_> {
             distance_m: Some(0.0),
             pair: Some((point.link, point.other)),
             witness: Some((point.on_link, point.on_other)),
+            point_in_a: state.pose(scene, point.link).map(|pose| pose.inverse_transform_point(point.on_link)),
             ..self.nothing()
         }
     }
@@ -243,7 +274,7 @@ impl CheckedPairs<'_, '_> {
     /// The row without a pair.
     fn nothing(&self) -> QueryRow {
         let level = self.checker.last_level();
-        QueryRow { index: 0, collides: false, distance_m: None, pair: None, witness: None, level }
+        QueryRow { index: 0, collides: false, distance_m: None, pair: None, witness: None, point_in_a: None, level }
     }
 
     /// The row of a distance query; `None` without pairs.
@@ -292,6 +323,7 @@ fn row_of(d: &PairDistance) -> QueryRow {
         distance_m: Some(d.metres.max(0.0)),
         pair: Some((d.a, d.b)),
         witness: Some((d.on_a, d.on_b)),
+        point_in_a: None,
         level: d.level,
     }
 }

@@ -15,6 +15,8 @@ pub enum QueryKind {
     Point,
     /// All triangles that touch.
     Contacts,
+    /// The first contact of the motion to the next state.
+    Time,
 }
 
 /// A text that is not a query kind.
@@ -23,7 +25,7 @@ pub struct UnknownQueryKind(String);
 
 impl std::fmt::Display for UnknownQueryKind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}; write collision, distance, tolerance=0.02 (metres), point or contacts", self.0)
+        write!(f, "{}; write collision, distance, tolerance=0.02 (metres), point, contacts or time", self.0)
     }
 }
 
@@ -32,7 +34,7 @@ impl std::error::Error for UnknownQueryKind {}
 impl FromStr for QueryKind {
     type Err = UnknownQueryKind;
 
-    /// `collision`, `distance`, `tolerance=METRES`, `point` or `contacts`.
+    /// `collision`, `distance`, `tolerance=METRES`, `point`, `contacts` or `time`.
     ///
     /// ```
     /// use elbowroom_query::QueryKind;
@@ -45,6 +47,7 @@ impl FromStr for QueryKind {
             "distance" => return Ok(Self::Distance),
             "point" => return Ok(Self::Point),
             "contacts" => return Ok(Self::Contacts),
+            "time" => return Ok(Self::Time),
             _ => {}
         }
         let Some(number) = word.strip_prefix("tolerance") else {

@@ -6,12 +6,14 @@
 
 mod evaluate;
 mod kind;
+mod motion;
 mod pairs;
 mod row;
 mod states;
 
-pub use evaluate::{BLOCK, Query, evaluate, evaluate_contacts, evaluate_query};
+pub use evaluate::{BLOCK, Query, QueryEffort, evaluate, evaluate_contacts, evaluate_query};
 pub use kind::{QueryKind, UnknownQueryKind};
+pub use motion::{MotionRecord, MotionRow, evaluate_motions};
 pub use pairs::{QueryPairs, QueryPairsError};
 pub use row::{ContactRecord, ContactRow, QueryRecord, QueryRow};
 pub use states::QueryStates;

@@ -19,6 +19,8 @@ pub struct QueryRow {
     pub pair: Option<(GeometryId, GeometryId)>,
     /// Witness points on the surfaces of the pair, in the world.
     pub witness: Option<(Vec3, Vec3)>,
+    /// With [`QueryKind::Point`](crate::QueryKind::Point) the witness point of the first in its own frame, m.
+    pub point_in_a: Option<Vec3>,
     /// The finest resolution level used.
     pub level: Level,
 }
@@ -48,6 +50,9 @@ pub struct QueryRecord {
     pub by: Option<f64>,
     /// z of that point.
     pub bz: Option<f64>,
+    /// Of a collision point: its place in the frame of `a`, m; only in JSON.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point_in_a_m: Option<[f64; 3]>,
     /// `L1`, `L2`, `capsule`, `hull` or `L3`.
     pub level: String,
 }
@@ -74,6 +79,7 @@ impl QueryRecord {
             bx: on(b, 0),
             by: on(b, 1),
             bz: on(b, 2),
+            point_in_a_m: row.point_in_a.filter(|p| p.is_finite()).map(Vec3::to_array),
             level: row.level.to_string(),
         }
     }
@@ -160,7 +166,7 @@ impl ContactRecord {
 }
 
 /// Quoted where necessary (RFC 4180).
-fn quoted(name: &str) -> String {
+pub(super) fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 

@@ -2,6 +2,7 @@
 
 use elbowroom_avoidance::fuzzy::Surface;
 use elbowroom_avoidance::{AvoiderState, EscapeState};
+use serde::Serialize;
 
 use super::tick_times::TickTimes;
 
@@ -14,10 +15,29 @@ pub struct AvoidanceTrack {
     pub obstacles: Vec<String>,
     /// Wall-clock time of its steps: sensing, correction, check, command.
     pub step_ns: TickTimes,
+    /// Its evasions, in order of time.
+    pub evasions: Vec<Evasion>,
     /// Replanning attempts, in order of time.
     pub plans: Vec<ReplanRecord>,
     /// Its rules: one control surface per output.
     pub surfaces: Vec<Surface>,
+}
+
+/// The beginning of an evasion: the chain that ends in the collision point is steered (Reichenbach and Kovačić, 2003).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Evasion {
+    /// Simulated time, s.
+    pub t_s: f64,
+    /// The obstacle, an object or `robot/link`; null for a part of the cell that does not move by itself.
+    pub obstacle: Option<String>,
+    /// The link of the collision point.
+    pub link: String,
+    /// The point in the frame of the link, m, as `inspect --at` takes it.
+    pub in_link_m: [f64; 3],
+    /// Its distance from the nearest obstacle that is evaded, m.
+    pub distance_m: f64,
+    /// The independent joints that move it, from the base outwards.
+    pub moved_by: Vec<String>,
 }
 
 /// One replanning attempt.

@@ -15,7 +15,7 @@ use elbowroom_monitor::OverrideReason;
 use elbowroom_spatial::{Pose, Vec3};
 use serde::Serialize;
 
-pub use avoidance_track::{AvoidanceSample, AvoidanceTrack, ReplanRecord};
+pub use avoidance_track::{AvoidanceSample, AvoidanceTrack, Evasion, ReplanRecord};
 pub use guidance_track::{ForceSample, GuidanceSample, GuidanceState, GuidanceTrack};
 pub use perception_track::{Hold, HoldReason, PathReplan, PerceptionTrack, SensorTrack};
 pub use region_track::{RecordedRegionKind, RegionPoses, RegionTrack, Span};

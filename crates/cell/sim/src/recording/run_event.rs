@@ -12,7 +12,8 @@ pub struct EventRow {
     pub t_s: f64,
     /// The robot concerned.
     pub robot: String,
-    /// The region concerned, the fixture, the object gripped or released, or the perceived obstacle; empty otherwise.
+    /// The region concerned, the fixture, the object gripped or released, or the perceived or evaded obstacle; empty
+    /// otherwise.
     pub region: String,
     /// The event.
     pub event: RunEvent,
@@ -43,7 +44,7 @@ pub enum RunEvent {
     Stale,
     /// A robot made a tool active, which is named in place of the region.
     Tool,
-    /// The avoidance of a robot changed to this state.
+    /// The avoidance of a robot changed to this state. An evaded obstacle is named in place of the region.
     Avoidance(AvoiderState),
     /// The tool of a guided robot changed to this state. With the name of a fixture, it was not switched: the tool is too
     /// near.

@@ -7,7 +7,8 @@ use elbowroom_avoidance::{
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{AvoidanceSpec, Cell};
 use elbowroom_diagnostic::Diagnostic;
-use elbowroom_kinematics::{ChainState, JointLimits};
+use elbowroom_kinematics::surface_ik::{PointChain, SurfaceIkOptions};
+use elbowroom_kinematics::{Chain, ChainState, JointLimits};
 use elbowroom_planner::{PathConstraint, RrtConnectSettings};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene};
@@ -15,7 +16,7 @@ use elbowroom_spatial::FrameMotion;
 
 use super::observation::ObservationModel;
 use crate::motion::ProgramClock;
-use crate::recording::{AvoidanceSample, AvoidanceTrack, ReplanRecord, RunEvent, TickTimes};
+use crate::recording::{AvoidanceSample, AvoidanceTrack, Evasion, ReplanRecord, RunEvent, TickTimes};
 
 /// Settings of the replanning of a robot that is off its path or blocked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -235,7 +236,33 @@ impl<'s> AvoidingRobot<'s> {
         let constraint = constraint.as_mut().map(|c| c as &mut dyn PathConstraint);
         self.step(cell, clock, states, t_s, allowed, constraint);
         let now = self.output.state;
-        (now != before).then_some(RunEvent::Avoidance(now))
+        if now == before {
+            return None;
+        }
+        if now == AvoiderState::Evading {
+            let evasion = self.evasion(&cell.robots[self.robot.0].robot.chain, t_s);
+            self.track.evasions.extend(evasion);
+        }
+        Some(RunEvent::Avoidance(now))
+    }
+
+    /// The obstacle that governs the correction of this tick.
+    pub fn obstacle(&self) -> Option<&str> {
+        self.track.obstacles.get(self.output.governed_by?).map(String::as_str)
+    }
+
+    /// The evasion that begins: its collision point, and the joints that move it.
+    fn evasion(&self, chain: &Chain, t_s: f64) -> Option<Evasion> {
+        let (link, in_link) = self.avoider.collision_point(&self.output.reaction)?;
+        let to_point = PointChain::new(chain, link, in_link, None, SurfaceIkOptions::default()).ok()?;
+        Some(Evasion {
+            t_s,
+            obstacle: self.obstacle().map(str::to_owned),
+            link: chain.links()[link.0].clone(),
+            in_link_m: in_link.to_array(),
+            distance_m: self.output.nearest_m,
+            moved_by: to_point.joints().iter().map(|joint| chain.joints()[joint.0].name.clone()).collect(),
+        })
     }
 
     /// True if the monitor almost stops the robot off its path: evasion has moved it to the border of a region.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use elbowroom_avoidance::AvoiderState;
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{Cell, Frames};
 use elbowroom_diagnostic::Diagnostic;
@@ -204,7 +205,8 @@ impl Simulation<'_> {
                 RegionConstraint::new(monitor, &sources, share, 0.0)
             };
             if let Some(event) = avoiding.advance(cell, clock, states, t_s, *applied, regions) {
-                journal.event(t_s, *id, "", event);
+                let is_evaded = event == RunEvent::Avoidance(AvoiderState::Evading);
+                journal.event(t_s, *id, avoiding.obstacle().filter(|_| is_evaded).unwrap_or_default(), event);
             }
         }
         self.cooperate(t_s)

@@ -1,5 +1,8 @@
 //! The end of a tick: the state machine and the output.
 
+use elbowroom_kinematics::LinkId;
+use elbowroom_spatial::Vec3;
+
 use super::{Avoider, MIN_PROGRESS};
 use crate::detour::SAME_CONFIGURATION_S;
 use crate::joint_limits::distance_s;
@@ -16,6 +19,13 @@ const MIN_CORRECTION: f64 = 0.02;
 const STATIONARY_OBSTACLE_M_S: f64 = 0.01;
 
 impl Avoider<'_> {
+    /// The point of the robot's surface that a reaction of the last tick steers: the link, and the point in its frame, m.
+    pub fn collision_point(&self, reaction: &Reaction) -> Option<(LinkId, Vec3)> {
+        let pair = self.query.pairs.get(reaction.governing?)?;
+        let link_in_root = self.query.chains[self.query.robot.0].link_in_root(pair.link);
+        Some((pair.link, link_in_root.inverse_transform_point(pair.on_link)))
+    }
+
     /// Ends the tick: updates the state machine and completes the output.
     pub(super) fn conclude(
         &mut self,

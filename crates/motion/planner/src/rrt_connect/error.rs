@@ -134,6 +134,9 @@ pub enum RrtConnectError {
         /// Why the move ends there.
         end: LinearMoveEnd,
     },
+    /// A straight line is planned on sphere covers, and a link has none.
+    #[error("a link without bounds cannot be enclosed in spheres, which a linear move needs: plan a free motion")]
+    LinearMoveWithoutCovers,
     /// A setting is invalid.
     #[error("{setting} is {value}: write {}", .setting.range())]
     InvalidSetting {

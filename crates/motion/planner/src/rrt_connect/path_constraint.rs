@@ -99,6 +99,47 @@ impl<C: PathConstraint + ?Sized> PathConstraint for Box<C> {
     }
 }
 
+/// All of several constraints: a path satisfies each of them. Distances of different kinds (1 rad counts as 1 m) are
+/// compared as numbers, and the least one counts.
+impl PathConstraint for Vec<Box<dyn PathConstraint + '_>> {
+    fn distance_m(&mut self, q: &[f64], limit_m: f64) -> f64 {
+        self.iter_mut().map(|c| c.distance_m(q, limit_m)).fold(f64::INFINITY, least)
+    }
+
+    fn margin_m(&mut self, q: &[f64], limit_m: f64) -> f64 {
+        self.iter_mut().map(|c| c.margin_m(q, limit_m)).fold(f64::INFINITY, least)
+    }
+
+    fn motion_bound_m(&mut self, from: &[f64], to: &[f64]) -> f64 {
+        self.iter_mut().map(|c| c.motion_bound_m(from, to)).fold(0.0, greatest)
+    }
+
+    fn describe_nearest(&mut self, q: &[f64]) -> String {
+        let distances = self.iter_mut().map(|c| c.distance_m(q, f64::INFINITY)).enumerate();
+        let nearest = distances.reduce(|a, b| if least(a.1, b.1).to_bits() == a.1.to_bits() { a } else { b });
+        nearest.map_or_else(String::new, |(index, _)| self[index].describe_nearest(q))
+    }
+
+    fn projected_edge_length(&self) -> Option<f64> {
+        self.iter().filter_map(PathConstraint::projected_edge_length).reduce(f64::min)
+    }
+
+    /// Each constraint in turn: a later one may undo an earlier one, and the configuration is then rejected.
+    fn project(&mut self, q: &mut [f64]) -> bool {
+        self.iter_mut().all(|c| c.project(q))
+    }
+}
+
+/// The smaller number; NaN if either is.
+fn least(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a < b { a } else { b }
+}
+
+/// The greater number; NaN if either is.
+fn greatest(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
 /// Checks configurations and motions against a constraint.
 #[derive(Debug)]
 pub(crate) struct ConstraintChecker<'c> {
@@ -219,6 +260,69 @@ mod tests {
             // Every sample is within 0.75 mm of the nearest point of all.
             prop_assert!(proven || least < TOLERANCE_M + 7.5e-4, "{least}");
         }
+    }
+
+    /// A ball that a point of the plane keeps out of.
+    #[derive(Debug)]
+    struct Ball {
+        x: f64,
+        projects: bool,
+    }
+
+    impl PathConstraint for Ball {
+        fn distance_m(&mut self, q: &[f64], _: f64) -> f64 {
+            (q[0] - self.x).hypot(q[1]) - 0.1
+        }
+
+        fn motion_bound_m(&mut self, from: &[f64], to: &[f64]) -> f64 {
+            (from[0] - to[0]).hypot(from[1] - to[1])
+        }
+
+        fn describe_nearest(&mut self, _: &[f64]) -> String {
+            format!("ball {}", self.x)
+        }
+
+        fn projected_edge_length(&self) -> Option<f64> {
+            self.projects.then_some(self.x.abs())
+        }
+
+        fn project(&mut self, q: &mut [f64]) -> bool {
+            q[1] += self.x;
+            self.projects
+        }
+    }
+
+    #[test]
+    fn of_several_constraints_the_nearest_counts() {
+        let ball = |x, projects| Box::new(Ball { x, projects }) as Box<dyn PathConstraint>;
+        let mut both = vec![ball(0.5, true), ball(-0.4, true)];
+        assert!((both.distance_m(&[0.2, 0.0], 1.0) - 0.2).abs() < 1e-12);
+        assert!((both.distance_m(&[-0.2, 0.0], 1.0) - 0.1).abs() < 1e-12);
+        assert_eq!(
+            (both.describe_nearest(&[0.2, 0.0]), both.describe_nearest(&[-0.2, 0.0])),
+            ("ball 0.5".into(), "ball -0.4".into())
+        );
+        assert!(
+            both.distance_m(&[f64::NAN, 0.0], 1.0).is_nan()
+                && both.motion_bound_m(&[0.0; 2], &[f64::NAN, 0.0]).is_nan()
+        );
+        assert!((both.motion_bound_m(&[0.0, 0.0], &[0.0, 2.0]) - 2.0).abs() < 1e-12);
+        let mut q = [0.0, 0.0];
+        assert!(both.project(&mut q) && (q[1] - 0.1).abs() < 1e-12);
+        assert_eq!(both.projected_edge_length(), Some(0.4));
+        assert_eq!(vec![ball(0.5, false)].projected_edge_length(), None);
+        let mut none: Vec<Box<dyn PathConstraint>> = Vec::new();
+        assert!(
+            none.distance_m(&[0.0], 1.0) == f64::INFINITY
+                && none.project(&mut q)
+                && none.describe_nearest(&q).is_empty()
+        );
+        // A proof for both: between the balls, not through one of them.
+        let mut checker = ConstraintChecker::new(both);
+        assert!(checker.proves_motion(&[0.0, -1.0], &[0.1, 1.0]));
+        assert!(
+            !checker.proves_motion(&[-0.4, -1.0], &[-0.4, 1.0]) && !checker.proves_motion(&[0.5, -1.0], &[0.5, 1.0])
+        );
     }
 
     #[test]

@@ -1,0 +1,118 @@
+//! How the TCP moves on a path: freely, on a straight line, or with an axis that keeps its direction.
+
+use elbowroom_cell::region_constraint::RegionConstraint;
+use elbowroom_cell::{Cell, CellRobot};
+use elbowroom_formats::Diagnostic;
+use elbowroom_kinematics::ChainState;
+use elbowroom_planner::{LinearMove, OrientationConstraint, PathConstraint};
+use elbowroom_robot::RobotId;
+use elbowroom_scene::Scene;
+use elbowroom_spatial::{Pose, Vec3};
+
+use super::path_goal::PathGoal;
+
+/// Largest distance of the TCP from a straight line between waypoints, m, and rotation from the orientation there, rad.
+const LINE_TOLERANCE: (f64, f64) = (5e-4, 1e-3);
+
+/// The motion of the TCP on a path.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum TcpMotion {
+    /// Any.
+    #[default]
+    Free,
+    /// Straight to the goal, which is a pose; the orientation turns uniformly. In one posture, within 0.5 mm and 0.06°.
+    Linear,
+    /// An axis of the TCP keeps its direction in the world.
+    KeptAxis(KeptAxis),
+}
+
+/// An axis of the TCP that keeps the direction that it has at the start; the TCP may turn about it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeptAxis {
+    /// The axis in the frame of the TCP; any length but 0.
+    pub axis_in_tcp: Vec3,
+    /// Largest angle from the direction at the start, rad.
+    pub tolerance_rad: f64,
+}
+
+/// The straight line to a goal, if the TCP moves on one; `is_searched` if the request is one for a search on a map, or
+/// for shorter and shorter paths.
+///
+/// # Errors
+/// A goal that is no pose; a search that finds no straight lines.
+pub(super) fn line(
+    cell: &Cell,
+    robot: &CellRobot,
+    motion: TcpMotion,
+    to: &PathGoal,
+    is_searched: bool,
+) -> Result<Option<LinearMove>, Diagnostic> {
+    if motion != TcpMotion::Linear {
+        return Ok(None);
+    }
+    let PathGoal::Tcp(target) = to else {
+        let what = format!("robot \"{}\": a linear move leads to a pose of the TCP", robot.name);
+        return Err(Diagnostic::new(&cell.file, robot.line, what).hint("a pose as the goal, or a free motion"));
+    };
+    if is_searched {
+        let what = format!("robot \"{}\": a linear move has one path, and no map is searched for it", robot.name);
+        return Err(Diagnostic::new(&cell.file, robot.line, what).hint("the planner rrt-connect, without optimizing"));
+    }
+    Ok(Some(LinearMove {
+        link: robot.flange,
+        tip_in_link: robot.tcp_in_flange,
+        target_in_world: target.in_world,
+        tolerance_m: LINE_TOLERANCE.0,
+        tolerance_rad: LINE_TOLERANCE.1,
+    }))
+}
+
+/// All constraints of a path: the regions closed to the robot, and a kept axis.
+///
+/// # Errors
+/// An axis without direction or a tolerance that is not above 0; a start in a region, from which a path with a kept axis
+/// is not planned.
+pub(super) fn constraints<'m>(
+    cell: &Cell,
+    scene: &Scene,
+    (id, from): (RobotId, &[f64]),
+    motion: TcpMotion,
+    regions: Option<RegionConstraint<'m>>,
+) -> Result<Vec<Box<dyn PathConstraint + 'm>>, Diagnostic> {
+    let mut all: Vec<Box<dyn PathConstraint + 'm>> = Vec::new();
+    let robot = &cell.robots[id.0];
+    let refused = |what: &str, hint: &str| {
+        Err(Diagnostic::new(&cell.file, robot.line, format!("robot \"{}\": {what}", robot.name)).hint(hint))
+    };
+    if let TcpMotion::KeptAxis(KeptAxis { axis_in_tcp, tolerance_rad }) = motion {
+        let Some(axis) = axis_in_tcp.try_normalize() else {
+            return refused("the axis to keep has no direction", "an axis other than 0, as 0,0,1");
+        };
+        if !(tolerance_rad > 0.0 && tolerance_rad.is_finite()) {
+            return refused("the angle by which a kept axis may turn is not above 0", "an angle above 0");
+        }
+        let tcp_in_world = tcp_in_world(robot, from);
+        let axis_in_flange = robot.tcp_in_flange.rotation * axis;
+        let direction = tcp_in_world.rotation * axis;
+        let kept = OrientationConstraint::new(scene, id, robot.flange, axis_in_flange, direction, tolerance_rad);
+        all.push(Box::new(kept));
+    }
+    if let Some(mut regions) = regions {
+        // Out of a region a path leads in any way that comes no deeper.
+        if !all.is_empty() && !(regions.distance_m(from, 0.0) > 0.0) {
+            let inside = regions.describe_nearest(from);
+            return refused(&format!("its start is in {inside}"), "a free motion out of it first");
+        }
+        all.push(Box::new(regions));
+    }
+    Ok(all)
+}
+
+/// The TCP at joint values.
+fn tcp_in_world(robot: &CellRobot, q: &[f64]) -> Pose {
+    let chain = &robot.robot.chain;
+    let mut state = ChainState::new(chain);
+    state.q.copy_from_slice(q);
+    chain.forward(&mut state);
+    robot.base_in_world * state.link_in_root(robot.flange) * robot.tcp_in_flange
+}
