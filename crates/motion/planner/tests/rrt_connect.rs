@@ -217,6 +217,11 @@ fn the_number_of_states_is_limited() {
     let error = RrtConnect::new(&scene, RobotId(0)).unwrap().plan(&state, &there, &settings).unwrap_err();
     let RrtConnectError::NotFound { states_checked, .. } = error else { panic!("{error}") };
     assert!((500..700).contains(&states_checked), "{states_checked}");
+    // Of several goals the whole effort is told.
+    let goals = [there, [-1.5, 1.0, 0.1], [-1.5, 0.9, 0.0]];
+    let error = RrtConnect::new(&scene, RobotId(0)).unwrap().plan_to_any(&state, &goals, &settings).unwrap_err();
+    let RrtConnectError::NotFound { states_checked, nodes, .. } = error else { panic!("{error}") };
+    assert!((1500..2100).contains(&states_checked) && nodes >= 6, "{states_checked}, {nodes}");
 }
 
 #[test]

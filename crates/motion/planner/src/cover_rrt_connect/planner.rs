@@ -85,13 +85,13 @@ impl<'m> CoverRrtConnect<'m> {
     ) -> Result<JointPath, RrtConnectError> {
         let begin = Instant::now();
         let on_covers = RrtConnectSettings { time_limit: settings.time_limit.mul_f64(COVER_SHARE), ..*settings };
-        match self.plan_on_covers(begin, start, goals, &on_covers) {
-            Err(RrtConnectError::NotFound { .. }) => {}
+        let on_covers = match self.plan_on_covers(begin, start, goals, &on_covers) {
+            Err(error @ RrtConnectError::NotFound { .. }) => error,
             other => return other,
-        }
+        };
         let spent = begin.elapsed();
         let left = RrtConnectSettings { time_limit: settings.time_limit.saturating_sub(spent), ..*settings };
-        let path = self.exact.plan_to_any(start, goals, &left)?;
+        let path = self.exact.plan_to_any(start, goals, &left).map_err(|e| e.after(&on_covers))?;
         Ok(JointPath { planning_time: path.planning_time + spent, ..path })
     }
 

@@ -153,6 +153,22 @@ pub enum RrtConnectError {
     Scene(#[from] SceneError),
 }
 
+impl RrtConnectError {
+    /// Counts the effort of a search before this one, if both found no path.
+    pub(crate) fn after(mut self, before: &Self) -> Self {
+        if let (
+            Self::NotFound { seconds, states_checked, nodes, .. },
+            Self::NotFound { seconds: earlier_s, states_checked: earlier_states, nodes: earlier_nodes, .. },
+        ) = (&mut self, before)
+        {
+            *seconds += earlier_s;
+            *states_checked += earlier_states;
+            *nodes += earlier_nodes;
+        }
+        self
+    }
+}
+
 fn names(joints: &[String]) -> String {
     let each: Vec<_> = joints.iter().map(|joint| format!("`{joint}`")).collect();
     each.join(" and ")

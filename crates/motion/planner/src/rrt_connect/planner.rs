@@ -117,19 +117,20 @@ impl<'s> RrtConnect<'s> {
         settings: &RrtConnectSettings,
     ) -> Result<JointPath, RrtConnectError> {
         let begin = Instant::now();
-        let mut answer = Err(RrtConnectError::NoGoal);
+        let mut answer = RrtConnectError::NoGoal;
         for (i, goal) in goals.iter().enumerate() {
             let spent = begin.elapsed();
             let left = settings.time_limit.saturating_sub(spent) / u32::try_from(goals.len() - i).unwrap_or(u32::MAX);
             let found = self.plan(start, goal.as_ref(), &RrtConnectSettings { time_limit: left, ..*settings });
-            if let Ok(path) = found {
-                return Ok(JointPath { planning_time: path.planning_time + spent, ..path });
-            }
-            if i == 0 || matches!(found, Err(RrtConnectError::NotFound { .. })) {
-                answer = found;
+            let error = match found {
+                Ok(path) => return Ok(JointPath { planning_time: path.planning_time + spent, ..path }),
+                Err(error) => error,
+            };
+            if i == 0 || matches!(error, RrtConnectError::NotFound { .. }) {
+                answer = error.after(&answer);
             }
         }
-        answer
+        Err(answer)
     }
 
     /// Like [`plan`](Self::plan), but the ends need only be free: the path leaves (or reaches) an end with less than
