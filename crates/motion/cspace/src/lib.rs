@@ -53,6 +53,7 @@ mod planar_arm;
 mod planar_map;
 mod robot_map;
 mod seed_expansion;
+mod sphere_lattice;
 
 pub use cell_changes::CellChanges;
 pub use convex_obstacle::{ConvexObstacle, ConvexObstacleError};

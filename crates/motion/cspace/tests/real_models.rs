@@ -111,7 +111,7 @@ fn measure_deadlines_and_seeds(name: &str, case: &Case) {
         let begin = Instant::now();
         let deadline = begin + Duration::from_millis(ms);
         let mut spheres = SphereRefinement::new(&builder, shape, *at, 4096).unwrap();
-        while spheres.refine(deadline).unwrap() {}
+        while spheres.refine(Some(deadline)).unwrap() {}
         let (took, count) = (begin.elapsed(), spheres.spheres());
         let map = occupancy::occupancy(&grid, &[spheres.into_layer()]);
         compare(case, &grid, &map, 20_000);

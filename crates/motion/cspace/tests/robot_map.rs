@@ -294,3 +294,45 @@ fn an_obstacle_that_nearly_fills_a_closed_link_is_found() {
     assert!(tree.is_blocked(&[0.0, 1.2, 0.8]));
     case.compare(&tree, 10_000);
 }
+
+/// Trees of 2 and of 3 axes: each model encloses the obstacle's own cells, and more spheres block a part of what fewer block.
+#[test]
+fn more_spheres_block_a_part_of_what_fewer_block() {
+    let robot = example::arm().unwrap();
+    let beam = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.1, 0.5, 0.04) });
+    let plate = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.25) });
+    for (joints, step, shape, at) in [
+        (&[0, 1, 2][..], 6.0, &beam, [0.25, 0.1, 0.7]),
+        (&[1, 2], 2.0, &beam, [0.5, 0.0, 0.5]),
+        (&[0, 1, 2], 8.0, &plate, [0.8, 0.6, 0.9]),
+    ] {
+        let axes = axes(&robot, joints, step);
+        let builder = RobotMapBuilder::new(&robot, Pose::IDENTITY, &axes, joints, RemainingJoints::Swept).unwrap();
+        let obstacle = [(shape, Pose::from_xyz_rpy(at, [0.2, 0.5, 0.1]))];
+        let build = |model: ObstacleModel| builder.build_model(model, &obstacle, &|_| ()).unwrap();
+        let exact = build(ObstacleModel::Exact);
+        let mut before = build(ObstacleModel::Sphere);
+        let mut cell = vec![0_u16; joints.len()];
+        for count in [1, 2, 4, 7, 16, 64] {
+            let finer = build(ObstacleModel::Spheres(count));
+            let mut blocked = 0;
+            'cells: loop {
+                let [was, is, must] = [&before, &finer, &exact].map(|tree| tree.is_blocked_cell(&cell));
+                assert!((was || !is) && (is || !must), "{count} spheres, cell {cell:?}: {was} {is} {must}");
+                blocked += u64::from(is);
+                for (index, axis) in cell.iter_mut().zip(&axes) {
+                    *index += 1;
+                    if usize::from(*index) < axis.count() {
+                        continue 'cells;
+                    }
+                    *index = 0;
+                }
+                break;
+            }
+            assert_eq!(blocked, finer.blocked());
+            before = finer;
+        }
+        let [fewest, most] = [before.blocked(), build(ObstacleModel::Sphere).blocked()];
+        assert!(fewest < most, "{joints:?}: {fewest} of {most} of {}", exact.cells());
+    }
+}

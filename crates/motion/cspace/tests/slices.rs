@@ -229,12 +229,12 @@ fn spheres_are_refined_until_the_deadline_and_never_miss_a_cell() {
     let (shape, at) = &case.obstacles[0];
     let over = Instant::now();
     let mut late = SphereRefinement::new(&builder, shape, *at, 64).unwrap();
-    assert!(!late.refine(over).unwrap());
+    assert!(!late.refine(Some(over)).unwrap());
     assert_eq!(late.spheres(), 1);
     let mut before = occupancy(&grid, &[late.into_layer()]);
-    for most in [1, 2, 8, 20] {
+    for most in [1, 2, 8, 20, 64] {
         let mut spheres = SphereRefinement::new(&builder, shape, *at, most).unwrap();
-        while spheres.refine(Instant::now() + Duration::from_mins(1)).unwrap() {}
+        while spheres.refine(Some(Instant::now() + Duration::from_mins(1))).unwrap() {}
         assert_eq!(spheres.spheres(), 1 << most.ilog2());
         let map = occupancy(&grid, &[spheres.into_layer()]);
         assert_eq!(exact_and_missed(&case, &map).1, 0);

@@ -10,5 +10,6 @@ mod path_constraint;
 mod rrt_connect;
 mod separating_value;
 mod several_robots;
+mod table1;
 mod time_optimal;
 mod timing;

@@ -72,10 +72,8 @@ impl SolidsMap {
                 Ok(FilledCells { blocks: table(builder, &layers), time, spheres: None })
             }
             Self::Exact(builder) => {
-                let base = builder.base_in_world();
-                let solids: Vec<_> = obstacles.iter().flat_map(|(shape, at)| model.solids(shape, at, &base)).collect();
                 let begin = Instant::now();
-                let tree = builder.build_with_progress(&solids, progress)?;
+                let tree = builder.build_model(model, obstacles, progress)?;
                 Ok(FilledCells { blocks: BlockedCells::Tree(tree), time: begin.elapsed(), spheres: None })
             }
         }
@@ -113,7 +111,7 @@ impl SolidsMap {
                 is_refining = false;
                 for (refinement, time) in &mut all {
                     let begin = Instant::now();
-                    is_refining |= refinement.refine(deadline)?;
+                    is_refining |= refinement.refine(Some(deadline))?;
                     *time += begin.elapsed();
                 }
             }
@@ -153,6 +151,14 @@ fn add_layers(
         let begin = Instant::now();
         layers.push(builder.slice_layer(shape, in_world)?);
         return Ok(begin.elapsed());
+    }
+    if let ObstacleModel::Spheres(most) = model {
+        // Rounded up, as in every map.
+        let (mut spheres, begun) = first_sphere(builder, shape, *in_world, most.next_power_of_two())?;
+        let begin = Instant::now();
+        while spheres.refine(None)? {}
+        layers.push(spheres.into_layer());
+        return Ok(begun + begin.elapsed());
     }
     let mut time = Duration::ZERO;
     for (shape, in_world) in model.solids(shape, in_world, &builder.base_in_world()) {

@@ -36,6 +36,20 @@ pub enum ObstacleModel {
     Box,
 }
 
+impl ObstacleModel {
+    /// The models whose common cells this model blocks: 1, 2, 4, 8 … spheres, so that more of them never block more; else
+    /// itself alone.
+    pub(crate) fn coarser_to_finer(self) -> Vec<Self> {
+        match self {
+            Self::Spheres(most) => {
+                let parts = most.clamp(1, MAX_SPHERES).next_power_of_two();
+                (0..=parts.ilog2()).map(|n| Self::Spheres(1 << n)).collect()
+            }
+            other => vec![other],
+        }
+    }
+}
+
 /// The name is not the name of an obstacle model.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no obstacle model: write exact, slices, sphere, spheres=N (N from 1 to 4096) or box")]

@@ -6,7 +6,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use super::model::MAX_SPHERES;
 use crate::convex_obstacle::ConvexShape;
-use crate::cuboid::Bisection;
+use crate::sphere_lattice::SphereLattice;
 use crate::{ConvexObstacle, Layer, PlanarMapBuilder};
 
 /// Replaces a layer by the cells that spheres around parts of an obstacle block: first one sphere, then 2, 4, 8 … until
@@ -37,7 +37,7 @@ pub fn spheres_until(
     deadline: Option<Instant>,
     layer: &mut Layer,
 ) -> u32 {
-    let mut parts = vec![BoxPart::new(obstacle)];
+    let bounds = BoundingBox::new(obstacle);
     let (center, radius) = obstacle.enclosing_sphere();
     builder.build_layer(&ConvexObstacle { solid: ConvexShape::Sphere { center, radius } }, layer);
     if matches!(obstacle.solid, ConvexShape::Sphere { .. }) {
@@ -46,36 +46,40 @@ pub fn spheres_until(
     let cells = builder.grid().shape()[2];
     let mut count = 1;
     while count < max_spheres.min(MAX_SPHERES) {
-        parts = parts.iter().flat_map(BoxPart::halves).collect();
-        let Some(finer) = union_of_spheres(builder, &parts, deadline) else { break };
+        let Some(finer) = union_of_spheres(builder, &bounds, 2 * count, deadline) else { break };
         layer.intersect(&finer, cells);
         count *= 2;
     }
     count
 }
 
-/// The cells that all spheres block; `None` if the deadline passes.
-fn union_of_spheres(builder: &mut PlanarMapBuilder, parts: &[BoxPart], deadline: Option<Instant>) -> Option<Layer> {
+/// The cells that spheres around parts of a box block; `None` if the deadline passes.
+fn union_of_spheres(
+    builder: &mut PlanarMapBuilder,
+    bounds: &BoundingBox,
+    count: u32,
+    deadline: Option<Instant>,
+) -> Option<Layer> {
     let (mut whole, mut one) = (Layer::new(), Layer::new());
-    for part in parts {
+    for (centre, radius) in SphereLattice::new(bounds.half, count).spheres() {
         if deadline.is_some_and(|deadline| Instant::now() >= deadline) {
             return None;
         }
-        builder.build_layer(&part.sphere(), &mut one);
+        let center = bounds.in_base.transform_point(centre);
+        builder.build_layer(&ConvexObstacle { solid: ConvexShape::Sphere { center, radius } }, &mut one);
         whole.spans.extend_from_slice(&one.spans);
     }
     whole.spans.sort_unstable();
     Some(whole)
 }
 
-/// A part of the obstacle's bounding box.
-#[derive(Clone, Copy)]
-struct BoxPart {
+/// The box around an obstacle, aligned with the obstacle.
+struct BoundingBox {
     in_base: Pose,
     half: Vec3,
 }
 
-impl BoxPart {
+impl BoundingBox {
     fn new(obstacle: &ConvexObstacle) -> Self {
         match &obstacle.solid {
             ConvexShape::Sphere { center, radius } => {
@@ -88,17 +92,5 @@ impl BoxPart {
                 Self { in_base: Pose::new(in_base.rotation, middle), half: (max - min) * 0.5 }
             }
         }
-    }
-
-    fn halves(&self) -> [Self; 2] {
-        let Bisection { offset, half } = Bisection::new(self.half);
-        [1.0, -1.0].map(|side| {
-            let center = self.in_base.transform_point(offset * side);
-            Self { in_base: Pose::new(self.in_base.rotation, center), half }
-        })
-    }
-
-    fn sphere(&self) -> ConvexObstacle {
-        ConvexObstacle { solid: ConvexShape::Sphere { center: self.in_base.translation, radius: self.half.length() } }
     }
 }

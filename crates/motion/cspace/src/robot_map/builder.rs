@@ -15,7 +15,7 @@ use super::placed_obstacle::PlacedObstacle;
 use super::robot_pieces::{ClosedMesh, RobotPieces};
 use super::settings::{MAX_JOINTS, RobotMapSettings, RobotMapStats};
 use super::subdivision::{NodeLimitReached, Slab, Subdivision};
-use crate::GridAxis;
+use crate::{GridAxis, ObstacleModel};
 
 /// Largest number of bisections of a cell for the boundary resolution: with many axes its boundary has many parts.
 const MAX_BISECTIONS: u32 = 24;
@@ -97,16 +97,32 @@ impl RobotMapBuilder {
         self.build_with_stats(obstacles).map(|(tree, _)| tree)
     }
 
-    /// Like [`build`](Self::build); calls `progress` from any thread with the finished fraction, 0 to 1.
+    /// Like [`build`](Self::build), of a model of some obstacles; calls `progress` from any thread with the finished fraction, 0
+    /// to 1. More spheres never block more
+    /// cells than fewer: their cells are intersected with those of 1, 2, 4, 8 … spheres.
     ///
     /// # Errors
     /// The errors of [`RobotMapBuilder::build`].
-    pub fn build_with_progress(
+    pub fn build_model(
         &self,
-        obstacles: &[(Shape, Pose)],
+        model: ObstacleModel,
+        obstacles: &[(&Shape, Pose)],
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<BoxTree, RobotMapError> {
-        self.build_all(obstacles, progress).map(|(tree, _)| tree)
+        let models = model.coarser_to_finer();
+        let base = self.base_in_world();
+        let step = |done: usize| {
+            let solids: Vec<_> =
+                obstacles.iter().flat_map(|(shape, at)| models[done].solids(shape, at, &base)).collect();
+            let progress = |share: f64| progress((done as f64 + share) / models.len() as f64);
+            self.build_all(&solids, &progress).map(|(tree, _)| tree)
+        };
+        let mut common = step(0)?;
+        for done in 1..models.len() {
+            let finer = step(done)?;
+            common = common.intersection(&finer).unwrap_or(finer);
+        }
+        Ok(common)
     }
 
     /// Like [`build`](Self::build), with statistics.

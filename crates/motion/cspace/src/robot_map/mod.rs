@@ -18,6 +18,7 @@
 //! | `box_tree.rs`, `occupancy_array.rs` | the map as a tree of boxes, or one byte per cell |
 
 mod box_tree;
+mod box_tree_intersection;
 mod builder;
 mod cell_contact;
 mod covers;

@@ -9,7 +9,7 @@ use elbowroom_spatial::{Pose, Vec3};
 use super::enclosure::Enclosure;
 use super::sector_bounds::SectorBounds;
 use crate::ObstacleModel;
-use crate::cuboid::Bisection;
+use crate::sphere_lattice::SphereLattice;
 
 /// Widest wedge of a slice, radians.
 const MAX_WEDGE_RAD: f64 = PI / 12.0;
@@ -71,27 +71,21 @@ fn enclosing_sphere(shape: &Shape) -> (Shape, Vec3) {
 
 /// Spheres around the parts of the shape's bounding box that the shape intersects.
 fn spheres(shape: &Shape, count: u32) -> Vec<(Shape, Vec3)> {
-    let whole = shape.aabb(&Pose::IDENTITY);
-    let mut parts = vec![(whole.center(), whole.extent() * 0.5)];
     if count <= 1 || matches!(shape, Shape::Sphere(_)) {
         return vec![enclosing_sphere(shape)];
     }
-    while parts.len() < count as usize {
-        parts = parts.into_iter().flat_map(halves).collect();
-    }
-    let holds = |(center, half): &(Vec3, Vec3)| {
-        let part = Shape::Cuboid(Cuboid { half_extents: *half });
+    let whole = shape.aabb(&Pose::IDENTITY);
+    let mut parts = SphereLattice::new(whole.extent() * 0.5, count);
+    parts.retain(|centre, half| {
+        let part = Shape::Cuboid(Cuboid { half_extents: half });
+        let at = Pose::from_translation(whole.center() + centre);
         // The tolerance ensures that no surface falls between two parts.
-        within(&part, &Pose::from_translation(*center), shape, &Pose::IDENTITY, 1e-9 * half.length())
+        within(&part, &at, shape, &Pose::IDENTITY, 1e-9 * half.length())
+    });
+    let ball = |(centre, radius): (Vec3, f64)| {
+        (Shape::Sphere(Sphere { radius: radius * (1.0 + 1e-9) }), whole.center() + centre)
     };
-    parts.retain(holds);
-    let ball = |(center, half): (Vec3, Vec3)| (Shape::Sphere(Sphere { radius: half.length() * (1.0 + 1e-9) }), center);
-    parts.into_iter().map(ball).collect()
-}
-
-fn halves((center, half): (Vec3, Vec3)) -> [(Vec3, Vec3); 2] {
-    let Bisection { offset, half } = Bisection::new(half);
-    [1.0, -1.0].map(|side| (center + offset * side, half))
+    parts.spheres().into_iter().map(ball).collect()
 }
 
 /// Bounds of angle, radius and height about the base frame's z axis, as convex wedges; `None` if a wedge has no volume.

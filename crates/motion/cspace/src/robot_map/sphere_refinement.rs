@@ -30,7 +30,7 @@ use crate::{Layer, ObstacleModel};
 /// let beam = Shape::Cuboid(Cuboid { half_extents: Vec3::new(0.1, 0.4, 0.1) });
 /// let deadline = Instant::now() + Duration::from_millis(5);
 /// let mut spheres = SphereRefinement::new(&builder, &beam, Pose::from_translation(Vec3::new(0.7, 0.0, 0.7)), 64)?;
-/// while spheres.refine(deadline)? {}
+/// while spheres.refine(Some(deadline))? {}
 /// assert!(spheres.spheres() >= 1 && spheres.spheres() <= 64);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -64,16 +64,16 @@ impl<'b> SphereRefinement<'b> {
         Ok(first)
     }
 
-    /// Doubles the number of spheres, unless there would be too many or the deadline passes. The time is checked only
+    /// Doubles the number of spheres, unless there would be too many or the deadline, if there is one, passes. The time is checked only
     /// between two spheres: a sphere that is begun is finished. Returns false if nothing changed.
     ///
     /// # Errors
     /// The errors of [`CoverMapBuilder::layer`].
-    pub fn refine(&mut self, deadline: Instant) -> Result<bool, RobotMapError> {
+    pub fn refine(&mut self, deadline: Option<Instant>) -> Result<bool, RobotMapError> {
         if self.spheres.saturating_mul(2) > self.most {
             return Ok(false);
         }
-        let Some(finer) = self.layer_of(self.spheres * 2, Some(deadline))? else { return Ok(false) };
+        let Some(finer) = self.layer_of(self.spheres * 2, deadline)? else { return Ok(false) };
         self.layer.intersect(&finer, self.builder.grid().shape()[2]);
         self.spheres *= 2;
         Ok(true)

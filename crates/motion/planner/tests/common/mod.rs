@@ -4,6 +4,7 @@
 #[path = "../../../cspace/tests/common/covers.rs"]
 pub mod covers;
 pub mod robots;
+pub mod table1;
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
