@@ -303,7 +303,7 @@ fn more_spheres_block_a_part_of_what_fewer_block() {
     let plate = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.25) });
     for (joints, step, shape, at) in [
         (&[0, 1, 2][..], 6.0, &beam, [0.25, 0.1, 0.7]),
-        (&[1, 2], 2.0, &beam, [0.5, 0.0, 0.5]),
+        (&[1, 2], 2.0, &beam, [1.1, 0.0, 0.9]),
         (&[0, 1, 2], 8.0, &plate, [0.8, 0.6, 0.9]),
     ] {
         let axes = axes(&robot, joints, step);
