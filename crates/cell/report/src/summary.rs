@@ -341,12 +341,12 @@ fn region_lines(rec: &Recording, width: usize) -> Vec<Line> {
     let (most, longest) = (width.saturating_sub(56).max(8), rec.regions.iter().map(|r| r.name.chars().count()).max());
     let names = longest.unwrap_or(0).clamp(most.min(24), most);
     let head = format!(
-        "  {} {:<10}{:>11}  {:<8}{:>9}  {:<11}",
+        "  {} {:<10}{:>11}  {:<8}{:>10} {:<11}",
         pad("region", names),
         "kind",
         "closest",
         "entered",
-        "warned",
+        "warned for",
         "output"
     );
     let mut lines = vec![vec![(head, Style::Dim)]];
@@ -383,7 +383,7 @@ fn region_line(region: &RegionTrack, rec: &Recording, names: usize) -> Line {
         (format!("  {} ", pad(&region.name, names)), Style::Bold),
         (format!("{:<10}{:>11}  ", region.kind.name(), millimetres(region.min_distance_m)), Style::Plain),
         (format!("{entered:<8}"), if bad { Style::Bad } else { Style::Good }),
-        (format!("{:>7.2} s  ", region.warned_s), style),
+        (format!("{:>8.2} s ", region.warned_s), style),
         (output, Style::Plain),
     ]
 }

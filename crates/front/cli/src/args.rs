@@ -296,7 +296,7 @@ pub(crate) enum Written {
   elbowroom map cell.toml --page map.html       the slices in a browser, with a slider
   elbowroom map cell.toml --png slices          pictures, and the page slices/index.html
   elbowroom map cell.toml --exact               fewer cells blocked needlessly, tenths of a second per object
-  elbowroom map cell.toml --model slices        the quickest obstacle model of the paper; blocks more
+  elbowroom map cell.toml --model slices        a quick obstacle model of the paper; blocks more
   elbowroom map cell.toml --model spheres=64 --deadline 5   as many spheres as five milliseconds allow
 
 Joints and steps are in [map.ROBOT] of the cell file; without it the first three joints, 2 degrees
