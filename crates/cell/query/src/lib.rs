@@ -34,6 +34,7 @@
 //! the number of threads never changes them.
 
 mod cover_cache;
+mod link_cells;
 pub mod map;
 pub mod plan;
 pub mod problems;
@@ -42,6 +43,7 @@ pub mod watch;
 
 pub use cover_cache::CoverCache;
 pub use elbowroom_scene::Level;
+pub use link_cells::{LinkCells, blocked_by_link};
 pub use rows::{
     BLOCK, ContactRecord, ContactRow, MotionRecord, MotionRow, Query, QueryEffort, QueryKind, QueryPairs,
     QueryPairsError, QueryRecord, QueryRow, QueryStates, UnknownQueryKind, evaluate, evaluate_contacts,

@@ -22,12 +22,15 @@ const MAX_OBJECTS: usize = 255;
 /// Writes one page that opens offline: slices across any of three joints, chosen by a slider, with axes in the units of
 /// the cell.
 ///
+/// A path (joint values of the map's axes, rad or m, straight between its rows) is drawn over the slices, strongly where it
+/// passes through the cells of the slice.
+///
 /// With more than three joints, the page shows the first and the last two; the others are at the middle of their
 /// ranges.
 ///
 /// # Errors
 /// More than 2²⁶ cells on the three axes, more than 255 objects, and errors of `out`.
-pub fn write(mut out: impl Write, map: &CellMap, units: Units) -> io::Result<()> {
+pub fn write(mut out: impl Write, map: &CellMap, path: &[Vec<f64>], units: Units) -> io::Result<()> {
     let shown = shown_axes(map.axes.len());
     let counts = shown.map(|axis| axis.map_or(1, |axis| map.axes[axis].count()));
     if counts.iter().product::<usize>() > MAX_PAGE_CELLS || map.obstacles.len() > MAX_OBJECTS {
@@ -46,6 +49,7 @@ pub fn write(mut out: impl Write, map: &CellMap, units: Units) -> io::Result<()>
             "colour": palette::of_index(i),
             "share": (1e4 * o.blocks.blocked() as f64 / map.cells().max(1) as f64).round() / 100.0,
         })).collect::<Vec<_>>(),
+        "path": path_in_cells(path, map, shown),
         "cells": STANDARD.encode(packed_cells(map, shown, counts)),
     });
     let title = format!("Joint-space map of {}", escape(&map.robot));
@@ -84,6 +88,39 @@ fn axis_data(axis: &GridAxis, is_angle: bool, units: Units) -> Value {
         "step": axis.step() * scale,
         "count": axis.count(),
     })
+}
+
+/// A path in cells of the shown axes, to a hundredth; points on one line are left out.
+fn path_in_cells(path: &[Vec<f64>], map: &CellMap, shown: [Option<usize>; 3]) -> Vec<[f64; 3]> {
+    let place = |q: &Vec<f64>| {
+        shown.map(|axis| {
+            let cells = axis.map_or(0.5, |k| (q[k] - map.axes[k].min()) / map.axes[k].step());
+            (cells * 100.0).round() / 100.0
+        })
+    };
+    let mut kept: Vec<[f64; 3]> = Vec::new();
+    for at in path.iter().filter(|q| q.len() == map.axes.len()).map(place) {
+        if kept.last() == Some(&at) {
+            continue;
+        }
+        if let [.., before, last] = kept[..]
+            && is_straight(before, last, at)
+        {
+            kept.pop();
+        }
+        kept.push(at);
+    }
+    kept
+}
+
+/// Whether the second point is within a hundredth of a cell of the straight way between the others.
+fn is_straight(from: [f64; 3], at: [f64; 3], to: [f64; 3]) -> bool {
+    let minus = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (way, offset) = (minus(to, from), minus(at, from));
+    let share = dot(way, offset) / dot(way, way).max(f64::MIN_POSITIVE);
+    let off = minus(offset, way.map(|v| v * share));
+    (0.0..=1.0).contains(&share) && dot(off, off) <= 1e-4
 }
 
 fn summary(map: &CellMap, shown: [Option<usize>; 3]) -> String {
@@ -136,7 +173,15 @@ fn push_number(packed: &mut Vec<u8>, mut number: u64) {
 
 #[cfg(test)]
 mod tests {
-    use super::push_number;
+    use super::{is_straight, push_number};
+
+    #[test]
+    fn points_on_a_straight_way_are_left_out() {
+        assert!(is_straight([0.0; 3], [1.0, 1.0, 0.0], [3.0, 3.0, 0.0]));
+        assert!(!is_straight([0.0; 3], [1.0, 1.1, 0.0], [3.0, 3.0, 0.0]));
+        // Back again is a corner.
+        assert!(!is_straight([0.0; 3], [2.0, 0.0, 0.0], [1.0, 0.0, 0.0]) && !is_straight([0.0; 3], [1.0; 3], [0.0; 3]));
+    }
 
     #[test]
     fn numbers_are_read_back() {

@@ -296,6 +296,7 @@ pub(crate) enum Written {
   elbowroom map cell.toml --page map.html       the slices in a browser, with a slider
   elbowroom map cell.toml --png slices          pictures, and the page slices/index.html
   elbowroom map cell.toml --exact               fewer cells blocked needlessly, tenths of a second per object
+  elbowroom map cell.toml --page map.html --path path.csv       a path of `plan --out` over the slices
   elbowroom map cell.toml --model slices        a quick obstacle model of the paper; blocks more
   elbowroom map cell.toml --model spheres=64 --deadline 5   as many spheres as five milliseconds allow
 
@@ -318,6 +319,9 @@ pub(crate) struct MapArgs {
     /// passed; any number of spheres blocks every cell that the object blocks
     #[arg(long, value_name = "MS", value_parser = milliseconds, allow_negative_numbers = true, conflicts_with = "exact")]
     pub(crate) deadline: Option<f64>,
+    /// Also tell which links block the cells of each object
+    #[arg(long, conflicts_with = "deadline")]
+    pub(crate) links: bool,
     /// Write the occupancy to this file: one byte per cell, 0 free, 1 blocked, axes in the order of the joints
     #[arg(long, value_name = "FILE.npy")]
     pub(crate) out: Option<PathBuf>,
@@ -327,6 +331,10 @@ pub(crate) struct MapArgs {
     /// Write one page with the slices and a slider, which opens offline
     #[arg(long, value_name = "FILE.html")]
     pub(crate) page: Option<PathBuf>,
+    /// Draw this path over the slices of --page, and count its rows in blocked cells: states of the robot, as `plan --out`
+    /// writes them
+    #[arg(long, value_name = "FILE.csv", requires = "page")]
+    pub(crate) path: Option<PathBuf>,
     /// Print one JSON document instead of the table
     #[arg(long)]
     pub(crate) json: bool,

@@ -16,6 +16,7 @@ mod fixture;
 mod inspect;
 mod live;
 mod map;
+mod map_path;
 mod model_args;
 mod output;
 mod output_file;

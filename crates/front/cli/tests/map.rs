@@ -175,6 +175,67 @@ fn a_page_with_a_slider() {
     assert!(bad.contains("--page"), "{bad}");
 }
 
+/// A path of the grid planner keeps to free cells; a straight one passes through the table.
+#[test]
+fn a_path_is_drawn_over_the_slices() {
+    let dir = with_cell(CELL);
+    let go = [
+        "plan",
+        "cell.toml",
+        "--planner",
+        "grid",
+        "--from",
+        "-0.9,-0.2,-0.2",
+        "--to",
+        "0.9,-0.2,-0.2",
+        "--out",
+        "path.csv",
+    ];
+    elbowroom(dir.path(), &go).expect(0);
+    let draw = |path: &str, more: &[&str]| {
+        elbowroom(dir.path(), &[&["map", "cell.toml", "--page", "map.html", "--path", path], more].concat())
+    };
+    let free = draw("path.csv", &["--json"]).expect(0).json();
+    let rows = std::fs::read_to_string(dir.path().join("path.csv")).unwrap().lines().count() - 1;
+    assert_eq!((free["path"]["rows"].as_u64(), free["path"]["blocked"].as_u64()), (Some(rows as u64), Some(0)));
+    let page = std::fs::read_to_string(dir.path().join("map.html")).unwrap();
+    let data = page.split("const map = ").nth(1).unwrap().split(";\n").next().unwrap();
+    let data: serde_json::Value = serde_json::from_str(data).unwrap();
+    let path = data["path"].as_array().unwrap();
+    assert!(path.len() > 2 && path.len() < rows, "{} of {rows} points", path.len());
+    // In cells: from -170, -30 and -140 degrees up, in steps of 5, 5 and 4.
+    let first = [(-0.9_f64).to_degrees() + 170.0, (-0.2_f64).to_degrees() + 30.0, (-0.2_f64).to_degrees() + 140.0];
+    for (k, step) in [5.0, 5.0, 4.0].into_iter().enumerate() {
+        assert!((path[0][k].as_f64().unwrap() - first[k] / step).abs() < 0.006, "{}", path[0]);
+    }
+    let lines: Vec<String> = (0..=100).map(|n| format!("{},-0.2,-0.2", 0.018 * f64::from(n) - 0.9)).collect();
+    std::fs::write(dir.path().join("q.csv"), format!("joint_1,joint_2,joint_3\n{}\n", lines.join("\n"))).unwrap();
+    let text = draw("q.csv", &[]).expect(0).stdout;
+    let line = text.lines().find(|line| line.contains("of 101 rows of the path are in blocked cells")).unwrap();
+    assert!(!line.starts_with("0 "), "{line}");
+    assert!(draw("none.csv", &[]).expect(2).stderr.contains("none.csv"));
+    let alone = elbowroom(dir.path(), &["map", "cell.toml", "--path", "path.csv"]).expect(2).stderr;
+    assert!(alone.contains("--page"), "{alone}");
+}
+
+#[test]
+fn the_links_that_block_cells_are_told() {
+    let answer = map(CELL, &["--links", "--json"]).expect(0).json();
+    for obstacle in answer["obstacles"].as_array().unwrap() {
+        let all = obstacle["blocked"].as_u64().unwrap();
+        let links = obstacle["by_link"].as_object().unwrap();
+        let each: Vec<u64> = links.values().map(|cells| cells.as_u64().unwrap()).collect();
+        // A cell is blocked if any link may touch the object in it.
+        assert!(each.iter().all(|cells| *cells <= all) && each.iter().sum::<u64>() >= all, "{obstacle}");
+        // The forearm reaches farthest.
+        assert!(links.contains_key("link_3"), "{obstacle}");
+    }
+    let text = map(CELL, &["--links"]).expect(0).stdout;
+    assert!(text.contains("    by link_3 "), "{text}");
+    assert!(map(CELL, &["--json"]).expect(0).json()["obstacles"][0].get("by_link").is_none());
+    assert!(map(CELL, &["--links", "--model", "spheres=4", "--deadline", "5"]).expect(2).stderr.contains("--deadline"));
+}
+
 #[test]
 fn other_joints_anywhere_block_more() {
     let two = CELL.replace("step = [5, 5, 4]", "joints = [\"joint_1\", \"joint_2\"]\nstep = 5");

@@ -88,7 +88,7 @@ impl PointGoal {
     ///
     /// # Panics
     /// The scene does not have this robot, or the robot does not have this link.
-    pub fn placement(&self, scene: &Scene, robot: RobotId) -> impl FnMut(&[f64]) -> Vec3 {
+    pub fn placement(&self, scene: &Scene, robot: RobotId) -> impl FnMut(&[f64]) -> Vec3 + use<> {
         let (base_in_world, mut point) = (scene.robots()[robot.0].base_in_world, self.chain(scene, robot).ok());
         move |q| {
             base_in_world

@@ -160,3 +160,84 @@ fn faces<S: Simd>(simd: S, a: &PatchLanes<S>, b: &PatchLanes<S>, test: &FacingTe
     let every_direction = a.cos.max(b.cos).simd_lt(0.0);
     (cones & near & (beside | every_direction)).to_bitmask() & 0xff
 }
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_spatial::Rotation;
+    use elbowroom_testkit::random::Random;
+
+    use super::super::surface_patch::NormalCone;
+    use super::*;
+    use crate::lanes::detected_simd_level;
+
+    fn vector(random: &mut Random) -> Vec3 {
+        Vec3::from(random.within(1.0))
+    }
+
+    /// A small flat part, a curved one, or one with normals in every direction.
+    fn patch(random: &mut Random) -> SurfacePatch {
+        let axis = vector(random).try_normalize().unwrap_or(Vec3::Z);
+        let cone = match random.index(4) {
+            0 => NormalCone::every_direction(axis),
+            1 => NormalCone::around([(axis, 0.0)].into_iter(), axis),
+            _ => NormalCone::around([(axis, 1.5 * random.unit())].into_iter(), axis),
+        };
+        let radius = 0.3 * random.unit() as f32;
+        let center = (vector(random) * 0.6).to_array().map(|v| v as f32);
+        SurfacePatch { center, radius, thickness: radius * random.unit() as f32, cone }
+    }
+
+    fn facing_test(random: &mut Random) -> FacingTest {
+        let rotation =
+            Rotation::from_axis_angle(vector(random).try_normalize().unwrap_or(Vec3::X), 3.0 * random.unit());
+        let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| rotation * axis);
+        let rows: [[f32; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i] as f32));
+        let scale = 0.5 + random.unit() as f32;
+        FacingTest {
+            rows,
+            scaled_rows: rows.map(|row| row.map(|v| v * scale)),
+            shift: vector(random).to_array().map(|v| v as f32),
+            scale,
+            error: 1e-5,
+            limit: 0.5 * random.unit() as f32,
+        }
+    }
+
+    /// The kernel and the scalar test agree but where rounding decides: within 1e-4 of a limit, or of the edge of a cone.
+    #[test]
+    fn eight_patches_at_once_are_tested_as_one() {
+        let (level, mut random) = (detected_simd_level(), Random(23));
+        let (mut facing, mut apart, mut undecided) = (0, 0, 0);
+        for _ in 0..3_000 {
+            let test = facing_test(&mut random);
+            let [a, b]: [Vec<SurfacePatch>; 2] = std::array::from_fn(|_| (0..8).map(|_| patch(&mut random)).collect());
+            let (leaf_a, leaf_b) = (LeafPatches::new(&a), LeafPatches::new(&b));
+            for (i, one) in a.iter().enumerate() {
+                let mask = dispatch!(level, simd => {
+                    let of_b = PatchLanes::new(simd, &leaf_b).placed(simd, &test);
+                    faces(simd, &PatchLanes::of_lane(simd, &leaf_a, i), &of_b, &test)
+                });
+                for (j, other) in b.iter().enumerate() {
+                    let with = |by: f32| {
+                        let opened = |p: &SurfacePatch| {
+                            let half_angle = (p.cone.half_angle + by).clamp(0.0, std::f32::consts::PI);
+                            let cone =
+                                NormalCone { half_angle, cos: half_angle.cos(), sin: half_angle.sin(), ..p.cone };
+                            SurfacePatch { cone: if p.cone.cos < 0.0 { p.cone } else { cone }, ..*p }
+                        };
+                        let FacingTest { rows, scaled_rows, shift, scale, error, limit } = test;
+                        let test = FacingTest { rows, scaled_rows, shift, scale, error: error + by, limit: limit + by };
+                        opened(one).may_face(&opened(other), &test)
+                    };
+                    let [least, most] = [with(-1e-4), with(1e-4)];
+                    let is_facing = mask >> j & 1 == 1;
+                    assert!((is_facing || !least) && (!is_facing || most), "{one:?} and {other:?}, {i}, {j}");
+                    facing += usize::from(least);
+                    apart += usize::from(!most);
+                    undecided += usize::from(least != most);
+                }
+            }
+        }
+        assert!(facing > 1_000 && apart > 50_000 && undecided < 2_000, "{facing}, {apart}, {undecided}");
+    }
+}

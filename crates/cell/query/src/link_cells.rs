@@ -1,0 +1,61 @@
+//! Which links block the cells of a map.
+
+use elbowroom_cell::Cell;
+use elbowroom_formats::Diagnostic;
+
+use crate::map::{MapRequest, map, select_map};
+
+/// The cells that one link blocks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LinkCells {
+    /// The link.
+    pub link: String,
+    /// Number of cells in which it may touch each object, in the order of the cell's objects.
+    pub blocked: Vec<u64>,
+}
+
+/// The cells that each link blocks, as if the others had no solids. A cell that several links block counts for each of them.
+///
+/// ```
+/// use elbowroom_cell::Cell;
+/// use elbowroom_query::blocked_by_link;
+/// use elbowroom_query::map::{MapRequest, map};
+/// let cell = Cell::parse("c.toml", r#"
+/// version = 1
+/// units = { length = "mm", angle = "deg" }
+/// [robot.arm]
+/// dh = [{ a = 400, min = -170, max = 170, speed = 90 }, { a = 300, min = -170, max = 170, speed = 90 }]
+/// links = [{ capsule = { from = [-400, 0, 0], to = [0, 0, 0], radius = 40 } }, { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }]
+/// [object.ball]
+/// shape = "sphere"
+/// at = [600, 0, 0]
+/// radius = 100
+/// [map.arm]
+/// step = 2
+/// "#)?;
+/// let links = blocked_by_link(&cell, &MapRequest::default())?;
+/// // The upper arm does not reach the ball.
+/// assert_eq!(links.iter().map(|l| l.link.as_str()).collect::<Vec<_>>(), ["link_2"]);
+/// assert_eq!(links[0].blocked, [map(&cell, &MapRequest::default())?.blocked]);
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
+/// ```
+///
+/// # Errors
+/// As for [`map`].
+pub fn blocked_by_link(cell: &Cell, request: &MapRequest) -> Result<Vec<LinkCells>, Diagnostic> {
+    let (id, robot, _) = select_map(cell, request.robot.as_deref())?;
+    let mut found = Vec::new();
+    for link in robot.robot.links_with_colliders() {
+        let mut alone = cell.clone();
+        for (other, colliders) in alone.robots[id.0].robot.colliders.iter_mut().enumerate() {
+            if other != link.0 {
+                colliders.clear();
+            }
+        }
+        let blocked: Vec<u64> = map(&alone, request)?.obstacles.iter().map(|o| o.blocks.blocked()).collect();
+        if blocked.iter().any(|cells| *cells > 0) {
+            found.push(LinkCells { link: robot.robot.chain.links()[link.0].clone(), blocked });
+        }
+    }
+    Ok(found)
+}
