@@ -34,7 +34,7 @@ pub struct Evasion {
     pub link: String,
     /// The point in the frame of the link, m, as `inspect --at` takes it.
     pub in_link_m: [f64; 3],
-    /// Its distance from the nearest obstacle that is evaded, m.
+    /// Its distance from the obstacle, m.
     pub distance_m: f64,
     /// The independent joints that move it, from the base outwards.
     pub moved_by: Vec<String>,

@@ -253,14 +253,14 @@ impl<'s> AvoidingRobot<'s> {
 
     /// The evasion that begins: its collision point, and the joints that move it.
     fn evasion(&self, chain: &Chain, t_s: f64) -> Option<Evasion> {
-        let (link, in_link) = self.avoider.collision_point(&self.output.reaction)?;
+        let (link, in_link, distance_m) = self.avoider.collision_point(&self.output.reaction)?;
         let to_point = PointChain::new(chain, link, in_link, None, SurfaceIkOptions::default()).ok()?;
         Some(Evasion {
             t_s,
             obstacle: self.obstacle().map(str::to_owned),
             link: chain.links()[link.0].clone(),
             in_link_m: in_link.to_array(),
-            distance_m: self.output.nearest_m,
+            distance_m,
             moved_by: to_point.joints().iter().map(|joint| chain.joints()[joint.0].name.clone()).collect(),
         })
     }

@@ -19,11 +19,12 @@ const MIN_CORRECTION: f64 = 0.02;
 const STATIONARY_OBSTACLE_M_S: f64 = 0.01;
 
 impl Avoider<'_> {
-    /// The point of the robot's surface that a reaction of the last tick steers: the link, and the point in its frame, m.
-    pub fn collision_point(&self, reaction: &Reaction) -> Option<(LinkId, Vec3)> {
+    /// The point of the robot's surface that a reaction of the last tick steers: the link, the point in its frame, m, and its
+    /// distance from the obstacle, m.
+    pub fn collision_point(&self, reaction: &Reaction) -> Option<(LinkId, Vec3, f64)> {
         let pair = self.query.pairs.get(reaction.governing?)?;
         let link_in_root = self.query.chains[self.query.robot.0].link_in_root(pair.link);
-        Some((pair.link, link_in_root.inverse_transform_point(pair.on_link)))
+        Some((pair.link, link_in_root.inverse_transform_point(pair.on_link), pair.distance_m))
     }
 
     /// Ends the tick: updates the state machine and completes the output.
