@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use elbowroom_cell::{OutOfReachProofs, QueryModel};
-use elbowroom_query::{Level, QueryKind, QueryRecord, QueryStates, evaluate};
+use elbowroom_query::{Level, PairColumns, QueryKind, QueryRecord, QueryStates, evaluate};
 
 use super::digest::Digest;
 use super::hashed_group::HashedGroup;
@@ -82,10 +82,11 @@ fn add_record(digest: &mut Digest, record: &QueryRecord) {
     digest.whole(record.index);
     digest.flag(record.collides == 1);
     digest.some_number(record.distance_m);
-    for name in [&record.a, &record.b] {
+    let PairColumns { a, b, ax, ay, az, bx, by, bz } = &record.pair;
+    for name in [a, b] {
         digest.text(name.as_deref().unwrap_or_default());
     }
-    for coordinate in [record.ax, record.ay, record.az, record.bx, record.by, record.bz] {
-        digest.some_number(coordinate);
+    for coordinate in [ax, ay, az, bx, by, bz] {
+        digest.some_number(*coordinate);
     }
 }

@@ -207,7 +207,7 @@ fn names_are_those_of_the_cell() {
     let states = QueryStates::parse("s.csv".as_ref(), text, &model).unwrap();
     let row = rows(&model, &states, QueryKind::Collision, Level::Auto, OutOfReachProofs::Omit)[0];
     let written = QueryRecord::of(&row, &model);
-    assert_eq!((written.a.as_deref(), written.b.as_deref()), (Some("left/link_3"), Some("ball")));
+    assert_eq!((written.pair.a.as_deref(), written.pair.b.as_deref()), (Some("left/link_3"), Some("ball")));
     let link = model.robots[0].robot.chain.link("link_3").unwrap();
     let geometry = GeometryId::Link { robot: RobotId(0), link };
     assert_eq!(model.geometry_name(geometry), "left/link_3");

@@ -77,14 +77,14 @@ pub(crate) struct GoalArgs {
     pub(crate) to_pose: Option<Numbers>,
     /// Arm configuration at --to-pose, for six axes with a spherical wrist: front or back, up or down, `no_flip` or flip, or
     /// some of them
-    #[arg(long, value_name = "WORD,…", value_delimiter = ',', requires = "to_pose", conflicts_with = "to")]
+    #[arg(long, value_name = "WORD,…", value_delimiter = ',', requires = "to_pose", conflicts_with_all = ["to", "to_point"])]
     pub(crate) configuration: Vec<String>,
     /// Use only the solution for --to-pose that is nearest to these joint values, as --from
-    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, requires = "to_pose", conflicts_with = "to")]
+    #[arg(long, value_name = "q,…|NAME", allow_hyphen_values = true, requires = "to_pose", conflicts_with_all = ["to", "to_point"])]
     pub(crate) near: Option<Configuration>,
     /// Goal of a point: the link it belongs to, and its coordinates in the link's frame, in the cell file's units
     /// (`inspect --at` has its chain)
-    #[arg(long, value_name = "LINK,x,y,z", allow_hyphen_values = true, requires = "to_point")]
+    #[arg(long, value_name = "LINK,x,y,z", allow_hyphen_values = true, requires = "to_point", conflicts_with_all = ["to", "to_pose", "urdf"])]
     pub(crate) point: Option<LinkPoint>,
     /// Where --point ends in the world, in the cell file's units; the link may turn as it likes
     #[arg(long, value_name = "x,y,z", allow_hyphen_values = true, requires = "point", conflicts_with_all = ["to", "to_pose", "urdf"])]
@@ -95,7 +95,7 @@ pub(crate) struct GoalArgs {
 #[derive(Debug, Args)]
 pub(crate) struct TcpArgs {
     /// The TCP moves straight to --to-pose, in one posture
-    #[arg(long, requires = "to_pose", conflicts_with_all = ["keep", "configuration", "near", "optimize"])]
+    #[arg(long, requires = "to_pose", conflicts_with_all = ["keep", "configuration", "near", "optimize", "urdf"])]
     pub(crate) linear: bool,
     /// An axis of the TCP keeps the direction that it has at the start, within an angle in the cell file's unit: z=5, or
     /// 0,0.7,0.7=5

@@ -244,6 +244,12 @@ fn a_point_of_a_link_is_brought_to_a_place() {
     let both = ["--point", "link_2,0,0,0", "--to-point", "0,900,0", "--to", "1,0"];
     assert!(go(&both, 2).stderr.contains("cannot be used with"));
     assert!(go(&["--point", "link_2,0,0,0"], 2).stderr.contains("--to-point"));
+    for more in [&["--near", "1,1"][..], &["--configuration", "front"], &["--to-pose", "1,2,3,0,0,0"]] {
+        assert!(go(&[&args[..], more].concat(), 2).stderr.contains("cannot be used with"), "{more:?}");
+    }
+    assert!(go(&["--to-pose", "1,2,3,0,0,0", "--point", "link_2,0,0,0"], 2).stderr.contains("cannot be used with"));
+    // In the ball, with every configuration.
+    assert!(refused("link_2,0,0,0", "600,0,0").contains("configurations with the point at its place were tried"));
 }
 
 /// The arm's tip moves straight; and with an axis that is kept, which a planar arm always keeps.

@@ -152,8 +152,14 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, Diagnostic
         let begin = Instant::now();
         let answer = match query.plan(RobotPlanner::new(exact, model.zip(obstacles.as_ref()))) {
             Ok(timed) => PathAnswer::found(robot, timed),
-            Err(e) if is_no_path(&e) => PathAnswer::none(robot, begin.elapsed(), e.to_string()),
-            Err(e) => return Err(refused(e)),
+            Err(e) if is_no_path(&e) => {
+                PathAnswer::none(robot, begin.elapsed(), of_goals(&request.to, goals.len(), e.to_string()))
+            }
+            Err(e) => {
+                let refused = refused(e);
+                let message = of_goals(&request.to, goals.len(), refused.message.clone());
+                return Err(Diagnostic { message, ..refused });
+            }
         };
         Ok(PathAnswer { regions, ..answer })
     })?;
@@ -164,7 +170,15 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, Diagnostic
     Ok(PathAnswer { point, ..answer })
 }
 
-/// Whether the request was right, and there is no path or none was found.
+/// Why there is no path, said of the goals that were tried: others may have the point at its place too.
+fn of_goals(to: &PathGoal, count: usize, why: String) -> String {
+    match to {
+        PathGoal::Point(_) => format!("{count} configurations with the point at its place were tried: {why}"),
+        _ => why,
+    }
+}
+
+/// Whether the request was right, and a path does not exist or was not found.
 fn is_no_path(e: &RrtConnectError) -> bool {
     use RrtConnectError::{Disconnected, LinearMove, LinearMoveWithoutCovers, NotFound};
     matches!(e, NotFound { .. } | Disconnected { .. } | LinearMove { .. } | LinearMoveWithoutCovers)

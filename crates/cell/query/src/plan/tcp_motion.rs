@@ -39,7 +39,7 @@ pub struct KeptAxis {
 /// for shorter and shorter paths.
 ///
 /// # Errors
-/// A goal that is no pose; a search that finds no straight lines.
+/// A goal that is not a pose; a search that finds no straight lines.
 pub(super) fn line(
     cell: &Cell,
     robot: &CellRobot,

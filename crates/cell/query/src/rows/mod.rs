@@ -15,5 +15,5 @@ pub use evaluate::{BLOCK, Query, QueryEffort, evaluate, evaluate_contacts, evalu
 pub use kind::{QueryKind, UnknownQueryKind};
 pub use motion::{MotionRecord, MotionRow, evaluate_motions};
 pub use pairs::{QueryPairs, QueryPairsError};
-pub use row::{ContactRecord, ContactRow, QueryRecord, QueryRow};
+pub use row::{ContactRecord, ContactRow, PairColumns, QueryRecord, QueryRow};
 pub use states::QueryStates;

@@ -9,7 +9,7 @@ use elbowroom_scene::{Checker, Scene, SceneError, SceneState, SweepHit, SweepMov
 use serde::Serialize;
 
 use super::evaluate::{BLOCK, BlockRows, Query, QueryEffort, evaluate_blocks};
-use super::row::quoted;
+use super::row::PairColumns;
 use super::states::QueryStates;
 
 /// The result for the motion from one state to the next: all joints at constant rates, all together.
@@ -30,22 +30,9 @@ pub struct MotionRecord {
     pub collides: u8,
     /// The part of the motion that is free, from 0 to 1.
     pub free_share: f64,
-    /// First of the pair.
-    pub a: Option<String>,
-    /// Second of the pair.
-    pub b: Option<String>,
-    /// The point of contact on `a`, world, m.
-    pub ax: Option<f64>,
-    /// y of that point.
-    pub ay: Option<f64>,
-    /// z of that point.
-    pub az: Option<f64>,
-    /// The point on `b`.
-    pub bx: Option<f64>,
-    /// y of that point.
-    pub by: Option<f64>,
-    /// z of that point.
-    pub bz: Option<f64>,
+    /// The pair, and the points of contact.
+    #[serde(flatten)]
+    pub pair: PairColumns,
     /// 0 where the proof ended without a contact: what follows `free_share` is unknown.
     pub certain: u8,
 }
@@ -56,33 +43,18 @@ impl MotionRecord {
 
     /// The record of a row, with names.
     pub fn of(row: &MotionRow, model: &QueryModel) -> Self {
-        let point = |of: fn(&SweepHit) -> [f64; 3], axis: usize| {
-            row.hit.as_ref().map(|hit| of(hit)[axis]).filter(|v| v.is_finite())
-        };
-        let (a, b) = (|hit: &SweepHit| hit.on_a.to_array(), |hit: &SweepHit| hit.on_b.to_array());
         Self {
             index: row.index,
             collides: u8::from(row.hit.is_some()),
             free_share: row.hit.map_or(1.0, |hit| hit.time),
-            a: row.hit.map(|hit| model.geometry_name(hit.a)),
-            b: row.hit.map(|hit| model.geometry_name(hit.b)),
-            ax: point(a, 0),
-            ay: point(a, 1),
-            az: point(a, 2),
-            bx: point(b, 0),
-            by: point(b, 1),
-            bz: point(b, 2),
+            pair: PairColumns::of(row.hit.map(|hit| (hit.a, hit.b)), row.hit.map(|hit| (hit.on_a, hit.on_b)), model),
             certain: u8::from(row.hit.is_none_or(|hit| hit.certain)),
         }
     }
 
     /// The CSV line, without line break; unknown values are empty.
     pub fn csv(&self) -> String {
-        let number = |v: &Option<f64>| v.map_or_else(String::new, |v| format!("{v:?}"));
-        let name = |n: &Option<String>| n.as_deref().map_or_else(String::new, quoted);
-        let points = [&self.ax, &self.ay, &self.az, &self.bx, &self.by, &self.bz].map(number).join(",");
-        let (a, b) = (name(&self.a), name(&self.b));
-        format!("{},{},{:?},{a},{b},{points},{}", self.index, self.collides, self.free_share, self.certain)
+        format!("{},{},{:?},{},{}", self.index, self.collides, self.free_share, self.pair.csv(), self.certain)
     }
 }
 

@@ -25,15 +25,9 @@ pub struct QueryRow {
     pub level: Level,
 }
 
-/// A row in CSV and JSON.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct QueryRecord {
-    /// Index of the state, from 0.
-    pub index: usize,
-    /// 0 or 1.
-    pub collides: u8,
-    /// Distance in metres.
-    pub distance_m: Option<f64>,
+/// The columns of a pair; without one all are empty.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct PairColumns {
     /// First of the pair.
     pub a: Option<String>,
     /// Second of the pair.
@@ -50,6 +44,45 @@ pub struct QueryRecord {
     pub by: Option<f64>,
     /// z of that point.
     pub bz: Option<f64>,
+}
+
+impl PairColumns {
+    pub(super) fn of(
+        pair: Option<(GeometryId, GeometryId)>,
+        witness: Option<(Vec3, Vec3)>,
+        model: &QueryModel,
+    ) -> Self {
+        let point = |side: fn((Vec3, Vec3)) -> Vec3| {
+            let at = witness.map(side);
+            [0, 1, 2].map(|axis| at.map(|at| at[axis]).filter(|v| v.is_finite()))
+        };
+        let ([ax, ay, az], [bx, by, bz]) = (point(|w| w.0), point(|w| w.1));
+        let [a, b] = [pair.map(|p| p.0), pair.map(|p| p.1)].map(|id| id.map(|id| model.geometry_name(id)));
+        Self { a, b, ax, ay, az, bx, by, bz }
+    }
+
+    /// The columns in order; unknown values are empty.
+    pub(super) fn csv(&self) -> String {
+        // Debug format, so that 6e-17 stays short.
+        let number = |v: &Option<f64>| v.map_or_else(String::new, |v| format!("{v:?}"));
+        let name = |n: &Option<String>| n.as_deref().map_or_else(String::new, quoted);
+        let points = [&self.ax, &self.ay, &self.az, &self.bx, &self.by, &self.bz].map(number).join(",");
+        format!("{},{},{points}", name(&self.a), name(&self.b))
+    }
+}
+
+/// A row in CSV and JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct QueryRecord {
+    /// Index of the state, from 0.
+    pub index: usize,
+    /// 0 or 1.
+    pub collides: u8,
+    /// Distance in metres.
+    pub distance_m: Option<f64>,
+    /// The pair, and its witness points.
+    #[serde(flatten)]
+    pub pair: PairColumns,
     /// Of a collision point: its place in the frame of `a`, m; only in JSON.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub point_in_a_m: Option<[f64; 3]>,
@@ -64,21 +97,11 @@ impl QueryRecord {
     /// The record of a row, with names.
     pub fn of(row: &QueryRow, model: &QueryModel) -> Self {
         let number = |v: f64| v.is_finite().then_some(v);
-        let on =
-            |side: fn(&(Vec3, Vec3)) -> Vec3, axis: usize| row.witness.as_ref().and_then(|w| number(side(w)[axis]));
-        let (a, b) = (|w: &(Vec3, Vec3)| w.0, |w: &(Vec3, Vec3)| w.1);
         Self {
             index: row.index,
             collides: u8::from(row.collides),
             distance_m: row.distance_m.and_then(number),
-            a: row.pair.map(|p| model.geometry_name(p.0)),
-            b: row.pair.map(|p| model.geometry_name(p.1)),
-            ax: on(a, 0),
-            ay: on(a, 1),
-            az: on(a, 2),
-            bx: on(b, 0),
-            by: on(b, 1),
-            bz: on(b, 2),
+            pair: PairColumns::of(row.pair, row.witness, model),
             point_in_a_m: row.point_in_a.filter(|p| p.is_finite()).map(Vec3::to_array),
             level: row.level.to_string(),
         }
@@ -86,13 +109,8 @@ impl QueryRecord {
 
     /// The CSV line, without line break; unknown values are empty.
     pub fn csv(&self) -> String {
-        // Debug format, so that 6e-17 stays short.
-        let number = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:?}"));
-        let name = |n: &Option<String>| n.as_deref().map_or_else(String::new, quoted);
-        let [ax, ay, az] = [self.ax, self.ay, self.az].map(number);
-        let [bx, by, bz] = [self.bx, self.by, self.bz].map(number);
-        let (distance, a, b) = (number(self.distance_m), name(&self.a), name(&self.b));
-        format!("{},{},{distance},{a},{b},{ax},{ay},{az},{bx},{by},{bz},{}", self.index, self.collides, self.level)
+        let distance = self.distance_m.map_or_else(String::new, |v| format!("{v:?}"));
+        format!("{},{},{distance},{},{}", self.index, self.collides, self.pair.csv(), self.level)
     }
 }
 
@@ -166,7 +184,7 @@ impl ContactRecord {
 }
 
 /// Quoted where necessary (RFC 4180).
-pub(super) fn quoted(name: &str) -> String {
+fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 

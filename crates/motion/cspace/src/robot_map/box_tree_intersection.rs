@@ -3,32 +3,31 @@
 use super::box_tree::{BoxTree, CellRange, Node};
 
 impl BoxTree {
-    /// The cells that are blocked in both maps; `None` if they have different axes, or come from builders that divide the
-    /// axes differently.
-    pub(crate) fn intersection(&self, other: &Self) -> Option<Self> {
-        if self.axes != other.axes {
-            return None;
-        }
+    /// The cells that are blocked in both maps.
+    ///
+    /// # Panics
+    /// The maps come from different builders.
+    pub(crate) fn intersection(&self, other: &Self) -> Self {
+        assert!(self.axes == other.axes, "maps of one builder have the same axes");
         // Nothing moves out of the way of an obstacle that touches what no axis moves.
         if matches!(&other.slabs[..], [(0, nodes)] if nodes[..] == [Node::Blocked]) {
-            return Some(self.clone());
+            return self.clone();
         }
         if matches!(&self.slabs[..], [(0, nodes)] if nodes[..] == [Node::Blocked]) {
-            return Some(other.clone());
+            return other.clone();
         }
         let is_alike = self.slabs.iter().map(|slab| slab.0).eq(other.slabs.iter().map(|slab| slab.0));
-        is_alike.then(|| {
-            let whole = CellRange::all(&self.axes);
-            let slabs = self.slabs.iter().zip(&other.slabs).enumerate().map(|(i, ((first, a), (_, b)))| {
-                let mut cells = whole;
-                cells.first[0] = *first;
-                cells.end[0] = self.slabs.get(i + 1).map_or(whole.end[0], |next| next.0);
-                let mut nodes = Vec::new();
-                intersect((a, 0), (b, 0), &cells, &mut nodes);
-                (*first, nodes)
-            });
-            Self { axes: self.axes.clone(), slabs: slabs.collect() }
-        })
+        assert!(is_alike, "maps of one builder are divided alike");
+        let whole = CellRange::all(&self.axes);
+        let slabs = self.slabs.iter().zip(&other.slabs).enumerate().map(|(i, ((first, a), (_, b)))| {
+            let mut cells = whole;
+            cells.first[0] = *first;
+            cells.end[0] = self.slabs.get(i + 1).map_or(whole.end[0], |next| next.0);
+            let mut nodes = Vec::new();
+            intersect((a, 0), (b, 0), &cells, &mut nodes);
+            (*first, nodes)
+        });
+        Self { axes: self.axes.clone(), slabs: slabs.collect() }
     }
 }
 

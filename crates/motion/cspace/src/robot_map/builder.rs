@@ -119,8 +119,7 @@ impl RobotMapBuilder {
         };
         let mut common = step(0)?;
         for done in 1..models.len() {
-            let finer = step(done)?;
-            common = common.intersection(&finer).unwrap_or(finer);
+            common = common.intersection(&step(done)?);
         }
         Ok(common)
     }
