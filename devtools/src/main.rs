@@ -6,6 +6,7 @@
 #![allow(clippy::print_stdout, reason = "this program talks to the person who started it")]
 
 mod contacts;
+mod crate_pictures;
 mod cross_validation;
 mod evade;
 mod figures;

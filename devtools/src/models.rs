@@ -1,15 +1,16 @@
-//! Generated models under `examples/models`: written, or compared with the committed files.
+//! Generated files under `examples`, models and pictures: written, or compared with the committed files.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use crate::crate_pictures;
 use crate::robots::{self, File};
 
-const FOLDER: &str = "examples/models";
+const FOLDER: &str = "examples";
 
 /// Writes every file.
 pub fn write(root: &Path) -> Result<(), String> {
-    for (name, bytes) in files()? {
+    for (name, bytes) in files(root)? {
         let path = root.join(FOLDER).join(&name);
         let folder = path.parent().unwrap_or(root);
         std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
@@ -21,7 +22,7 @@ pub fn write(root: &Path) -> Result<(), String> {
 
 /// Compares with the existing files; a missing, differing or superfluous file is an error.
 pub fn check(root: &Path) -> Result<(), String> {
-    let files = files()?;
+    let files = files(root)?;
     let mut wrong = Vec::new();
     for (name, bytes) in &files {
         match std::fs::read(root.join(FOLDER).join(name)) {
@@ -41,23 +42,36 @@ pub fn check(root: &Path) -> Result<(), String> {
     ))
 }
 
-fn files() -> Result<Vec<File>, String> {
+/// All files, by their names below `examples`.
+fn files(root: &Path) -> Result<Vec<File>, String> {
+    let below = |folder: &'static str| move |(name, bytes): File| (format!("{folder}/{name}"), bytes);
+    let mut files: Vec<File> = models()?.into_iter().map(below("models")).collect();
+    files.extend(crate_pictures::files(root)?.into_iter().map(below("crate")));
+    files.sort();
+    Ok(files)
+}
+
+fn models() -> Result<Vec<File>, String> {
     let mut files = robots::tools::files()?;
     files.extend(robots::work_pieces::files()?);
     for robot in robots::all() {
         files.extend(robot.files()?);
     }
-    files.sort();
     Ok(files)
 }
 
-/// Lists meshes in a generated folder that are no longer generated.
+/// Lists meshes and pictures in a generated folder that are no longer generated.
 fn left_over(root: &Path, files: &[File]) -> Vec<String> {
     let paths: BTreeSet<PathBuf> = files.iter().map(|(name, _)| root.join(FOLDER).join(name)).collect();
     let folders: BTreeSet<&Path> = paths.iter().filter_map(|path| path.parent()).collect();
     let entries = folders.into_iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().flatten();
-    let stl = entries.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "stl"));
-    stl.filter(|path| !paths.contains(path)).map(|path| format!("{} is left over", path.display())).collect()
+    let is_generated = |path: &PathBuf| path.extension().is_some_and(|e| e == "stl" || e == "png");
+    entries
+        .map(|entry| entry.path())
+        .filter(is_generated)
+        .filter(|path| !paths.contains(path))
+        .map(|path| format!("{} is left over", path.display()))
+        .collect()
 }
 
 fn size(name: &str, bytes: usize) -> String {
@@ -72,12 +86,12 @@ mod tests {
 
     #[test]
     fn generation_is_deterministic() {
-        assert_eq!(files().unwrap(), files().unwrap());
+        assert_eq!(models().unwrap(), models().unwrap());
     }
 
     #[test]
     fn meshes_are_neither_crude_nor_heavy() {
-        for (name, bytes) in files().unwrap() {
+        for (name, bytes) in models().unwrap() {
             if name.contains("/meshes/") {
                 let triangles = (bytes.len() - 84) / 50;
                 assert!((300..=6000).contains(&triangles), "{name}: {triangles} triangles");

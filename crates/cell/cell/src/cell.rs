@@ -257,6 +257,17 @@ impl CellRobot {
         values.iter().enumerate().map(|(joint, &v)| units.joint(slides(joint), v)).collect()
     }
 
+    /// The TCP in the robot's root frame at joint values (all of the chain's, rad or m).
+    ///
+    /// # Panics
+    /// The number of values is wrong.
+    pub fn tcp_in_root(&self, q: &[f64]) -> Pose {
+        let mut state = ChainState::new(&self.robot.chain);
+        state.q.copy_from_slice(q);
+        self.robot.chain.forward(&mut state);
+        state.link_in_root(self.flange) * self.tcp_in_flange
+    }
+
     /// Names of the joints in the order of `q`.
     pub fn joint_names(&self) -> Vec<String> {
         let chain = &self.robot.chain;

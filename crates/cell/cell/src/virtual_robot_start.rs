@@ -2,7 +2,6 @@
 
 use elbowroom_cooperation::{CooperationError, Grasp, Member, VirtualRobot};
 use elbowroom_formats::Diagnostic;
-use elbowroom_kinematics::ChainState;
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_spatial::Pose;
@@ -45,10 +44,7 @@ impl CellVirtualRobot {
     /// The tool centre point of the holder in the frame of the work-piece, at the start.
     fn tool_in_part(&self, cell: &Cell) -> Pose {
         let holder = &cell.robots[self.members[self.holder].robot.0];
-        let mut state = ChainState::new(&holder.robot.chain);
-        state.q.copy_from_slice(&holder.start);
-        holder.robot.chain.forward(&mut state);
-        let tool_in_world = holder.base_in_world * state.link_in_root(holder.flange) * holder.tcp_in_flange;
+        let tool_in_world = holder.base_in_world * holder.tcp_in_root(&holder.start);
         cell.objects[self.work_piece.0].in_world.inverse_mul(&tool_in_world)
     }
 

@@ -3,15 +3,25 @@
 use elbowroom_cell::Cell;
 use elbowroom_formats::Diagnostic;
 
-use crate::map::{MapRequest, map, select_map};
+use crate::map::{CellMap, MapRequest, map, select_map};
 
 /// The cells that one link blocks.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct LinkCells {
     /// The link.
     pub link: String,
-    /// Number of cells in which it may touch each object, in the order of the cell's objects.
-    pub blocked: Vec<u64>,
+    /// The map of a robot that has only the solids of this link.
+    pub map: CellMap,
+}
+
+impl LinkCells {
+    /// Number of cells in which the link may touch an object, by its index in the map.
+    ///
+    /// # Panics
+    /// There is no such object.
+    pub fn blocked(&self, object: usize) -> u64 {
+        self.map.obstacles[object].blocks.blocked()
+    }
 }
 
 /// The cells that each link blocks, as if the others had no solids. A cell that several links block counts for each of them.
@@ -36,7 +46,7 @@ pub struct LinkCells {
 /// let links = blocked_by_link(&cell, &MapRequest::default())?;
 /// // The upper arm does not reach the ball.
 /// assert_eq!(links.iter().map(|l| l.link.as_str()).collect::<Vec<_>>(), ["link_2"]);
-/// assert_eq!(links[0].blocked, [map(&cell, &MapRequest::default())?.blocked]);
+/// assert_eq!(links[0].blocked(0), map(&cell, &MapRequest::default())?.blocked);
 /// # Ok::<(), elbowroom_formats::Diagnostic>(())
 /// ```
 ///
@@ -52,9 +62,9 @@ pub fn blocked_by_link(cell: &Cell, request: &MapRequest) -> Result<Vec<LinkCell
                 colliders.clear();
             }
         }
-        let blocked: Vec<u64> = map(&alone, request)?.obstacles.iter().map(|o| o.blocks.blocked()).collect();
-        if blocked.iter().any(|cells| *cells > 0) {
-            found.push(LinkCells { link: robot.robot.chain.links()[link.0].clone(), blocked });
+        let map = map(&alone, request)?;
+        if map.blocked > 0 {
+            found.push(LinkCells { link: robot.robot.chain.links()[link.0].clone(), map });
         }
     }
     Ok(found)

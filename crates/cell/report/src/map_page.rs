@@ -6,6 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use elbowroom_cell::Units;
 use elbowroom_cspace::GridAxis;
+use elbowroom_query::LinkCells;
 use elbowroom_query::map::CellMap;
 use serde_json::{Value, json};
 
@@ -25,12 +26,20 @@ const MAX_OBJECTS: usize = 255;
 /// A path (joint values of the map's axes, rad or m, straight between its rows) is drawn over the slices, strongly where it
 /// passes through the cells of the slice.
 ///
+/// With `links`, the cell under the pointer also tells which links block it.
+///
 /// With more than three joints, the page shows the first and the last two; the others are at the middle of their
 /// ranges.
 ///
 /// # Errors
 /// More than 2²⁶ cells on the three axes, more than 255 objects, and errors of `out`.
-pub fn write(mut out: impl Write, map: &CellMap, path: &[Vec<f64>], units: Units) -> io::Result<()> {
+pub fn write(
+    mut out: impl Write,
+    map: &CellMap,
+    links: &[LinkCells],
+    path: &[Vec<f64>],
+    units: Units,
+) -> io::Result<()> {
     let shown = shown_axes(map.axes.len());
     let counts = shown.map(|axis| axis.map_or(1, |axis| map.axes[axis].count()));
     if counts.iter().product::<usize>() > MAX_PAGE_CELLS || map.obstacles.len() > MAX_OBJECTS {
@@ -48,6 +57,10 @@ pub fn write(mut out: impl Write, map: &CellMap, path: &[Vec<f64>], units: Units
             "name": o.name,
             "colour": palette::of_index(i),
             "share": (1e4 * o.blocks.blocked() as f64 / map.cells().max(1) as f64).round() / 100.0,
+        })).collect::<Vec<_>>(),
+        "links": links.iter().map(|l| json!({
+            "name": l.link,
+            "cells": STANDARD.encode(packed_cells(&l.map, shown, counts)),
         })).collect::<Vec<_>>(),
         "path": path_in_cells(path, map, shown),
         "cells": STANDARD.encode(packed_cells(map, shown, counts)),
@@ -173,7 +186,66 @@ fn push_number(packed: &mut Vec<u8>, mut number: u64) {
 
 #[cfg(test)]
 mod tests {
-    use super::{is_straight, push_number};
+    use base64::Engine as _;
+    use elbowroom_cell::Cell;
+    use elbowroom_query::blocked_by_link;
+    use elbowroom_query::map::{MapRequest, map};
+    use serde_json::Value;
+
+    use super::{STANDARD, is_straight, push_number, write};
+
+    const CELL: &str = r#"
+version = 1
+units = { length = "mm", angle = "deg" }
+[robot.arm]
+dh = [{ alpha = 90, min = -90, max = 90, speed = 90 }, { a = 400, min = -60, max = 90, speed = 90 }, { a = 300, min = 0, max = 90, speed = 90 }]
+links = [[], { capsule = { from = [-400, 0, 0], to = [0, 0, 0], radius = 40 } }, { capsule = { from = [-300, 0, 0], to = [0, 0, 0], radius = 40 } }]
+[object.near]
+shape = "box"
+at = [250, 0, 0]
+size = [100, 100, 100]
+[object.far]
+shape = "sphere"
+at = [600, 0, 200]
+radius = 80
+[map.arm]
+step = 5
+"#;
+
+    /// The table of a page, as its script reads it.
+    fn unpacked(text: &Value, kinds: u64) -> Vec<u64> {
+        let (mut cells, mut number, mut shift) = (Vec::new(), 0, 0);
+        for byte in STANDARD.decode(text.as_str().unwrap()).unwrap() {
+            number |= u64::from(byte & 127) << shift;
+            shift += 7;
+            if byte & 128 == 0 {
+                cells.extend(std::iter::repeat_n(number % kinds, (number / kinds) as usize));
+                (number, shift) = (0, 0);
+            }
+        }
+        cells
+    }
+
+    #[test]
+    fn a_cell_is_blocked_by_the_links_that_block_it() {
+        let cell = Cell::parse("c.toml", CELL).unwrap();
+        let request = MapRequest::default();
+        let (whole, links) = (map(&cell, &request).unwrap(), blocked_by_link(&cell, &request).unwrap());
+        let mut page = Vec::new();
+        write(&mut page, &whole, &links, &[], cell.units).unwrap();
+        let page = String::from_utf8(page).unwrap();
+        let data = page.split("const map = ").nth(1).unwrap().split(";\n").next().unwrap();
+        let data: Value = serde_json::from_str(data).unwrap();
+        let cells = unpacked(&data["cells"], 3);
+        let links: Vec<Vec<u64>> =
+            data["links"].as_array().unwrap().iter().map(|link| unpacked(&link["cells"], 3)).collect();
+        assert!(links.len() == 2 && cells.len() as u64 == whole.cells());
+        // At a border a map may block a cell that is free in fact, and another map of the same solids not.
+        let differ = cells.iter().enumerate().filter(|(i, kind)| (**kind > 0) != links.iter().any(|l| l[*i] > 0)).count();
+        assert!(100 * differ < cells.iter().filter(|kind| **kind > 0).count(), "{differ}");
+        // Each link blocks cells that the other leaves free.
+        assert!((0..2).all(|l| (0..cells.len()).any(|i| links[l][i] > 0 && links[1 - l][i] == 0)));
+    }
 
     #[test]
     fn points_on_a_straight_way_are_left_out() {

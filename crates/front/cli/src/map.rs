@@ -41,7 +41,7 @@ pub(crate) fn map(args: &MapArgs) -> Result<ExitStatus, Failure> {
     let drawn = args.path.as_ref().map(|path| MapPath::read(path, &cell, &map)).transpose()?;
     if let Some(path) = &args.page {
         let rows = drawn.as_ref().map_or(&[][..], |drawn| &drawn.rows);
-        WholeFile::write(path, |out| map_page::write(out, &map, rows, cell.units))
+        WholeFile::write(path, |out| map_page::write(out, &map, &links, rows, cell.units))
             .map_err(|e| cannot_write_page(&map, path, &e))?;
     }
     if args.json {
@@ -146,7 +146,7 @@ impl<'a> Document<'a> {
             count: a.count(),
         };
         let of_links = |object: usize, links: &'a [LinkCells]| {
-            links.iter().map(|l| (l.link.as_str(), l.blocked[object])).filter(|(_, cells)| *cells > 0).collect()
+            links.iter().map(|l| (l.link.as_str(), l.blocked(object))).filter(|(_, cells)| *cells > 0).collect()
         };
         let obstacle = |(object, o): (usize, &'a MapObstacle)| ObstacleRow {
             name: &o.name,
@@ -185,8 +185,8 @@ fn text(map: &CellMap, links: &[LinkCells]) -> String {
         let (cells, percent) = (grouped(blocked), share(blocked));
         let time = format!("{:.1} ms", o.time.as_secs_f64() * 1e3);
         let _ = write!(out, "\n  {:<24} {model:<11} {cells:>14} {percent:>7.2} % {time:>10}", o.name);
-        for LinkCells { link, blocked } in links.iter().filter(|l| l.blocked[object] > 0) {
-            let _ = write!(out, "\n    by {link:<33} {:>14}", grouped(blocked[object]));
+        for (link, cells) in links.iter().map(|l| (&l.link, l.blocked(object))).filter(|(_, cells)| *cells > 0) {
+            let _ = write!(out, "\n    by {link:<33} {:>14}", grouped(cells));
         }
     }
     let _ = writeln!(out, "\n\n{} kB of memory", map.bytes().div_ceil(1000));

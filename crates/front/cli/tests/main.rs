@@ -4,6 +4,7 @@ mod carry;
 mod check;
 mod common;
 mod configurations;
+mod crate_example;
 mod fixtures;
 mod imports;
 mod inspect;

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use crate::common::command;
 use crate::common::live_process::LiveProcess;
 use crate::perceived_run::{
-    CAMERA, CLOUD, FRAMES, LATENCY_S, LEARNING, cell, clearance, stamp_s, write_clouds, write_pictures,
+    CAMERA, CLOUD, FRAMES, LATENCY_S, LEARNING, cell, clearance, crate_at, stamp_s, write_clouds, write_pictures,
 };
 use elbowroom::cell::Cell;
 use elbowroom::formats::robot::{LoadOptions, load};
@@ -102,7 +102,7 @@ impl LiveCell {
             writeln!(trace, "{},,{}", (*at - begun).as_secs_f64(), q.join(",")).unwrap();
         }
         let robot = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
-        clearance(&trace, &robot, f64::INFINITY)
+        clearance(&trace, &robot, |t_s| crate_at(t_s, f64::INFINITY))
     }
 }
 

@@ -104,7 +104,7 @@ pub(crate) fn cell(sensor: &str, kind: &str) -> String {
 }
 
 /// Position of the crate: it comes from outside, and blocks the arm from 1.5 s on, until `leaves_s`.
-fn crate_at(t_s: f64, leaves_s: f64) -> Point2 {
+pub(crate) fn crate_at(t_s: f64, leaves_s: f64) -> Point2 {
     let arrived = (1.2 * t_s).min(1.8);
     Point2::new(3.9 - arrived + (1.5 * (t_s - leaves_s)).max(0.0), 0.0)
 }
@@ -252,7 +252,7 @@ fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
 
 /// Returns the smallest distance (m) of the arm from the crate over a run, and its time: at every fourth tick, at every
 /// point of its surface.
-pub(crate) fn clearance(trace: &str, robot: &Robot, leaves_s: f64) -> (f64, f64) {
+pub(crate) fn clearance(trace: &str, robot: &Robot, crate_at: impl Fn(f64) -> Point2) -> (f64, f64) {
     let points = surface_points(robot);
     let mut state = ChainState::new(&robot.chain);
     let (mut least, mut when) = (f64::INFINITY, 0.0);
@@ -261,7 +261,7 @@ pub(crate) fn clearance(trace: &str, robot: &Robot, leaves_s: f64) -> (f64, f64)
         let (t_s, q) = (cells[0], &cells[2..8]);
         state.q.copy_from_slice(q);
         robot.chain.forward(&mut state);
-        let crate_at = crate_at(t_s, leaves_s);
+        let crate_at = crate_at(t_s);
         let poses: Vec<Pose> = (0..robot.colliders.len()).map(|l| state.link_in_root(LinkId(l))).collect();
         for (link, p) in &points {
             let p = poses[link.0].transform_point(*p);
@@ -344,7 +344,7 @@ fn check_run(dir: &Path, answer: &Answer, sensors: &str, records_name: &str) {
     let (robot, sensor) = (&json["robots"][0], &json[sensors][0]);
     let robot_model = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
     let trace = std::fs::read_to_string(dir.join("out/trace.csv")).unwrap();
-    let (least_m, when_s) = clearance(&trace, &robot_model, f64::INFINITY);
+    let (least_m, when_s) = clearance(&trace, &robot_model, |t_s| crate_at(t_s, f64::INFINITY));
     let score = score(&records(dir, records_name), f64::INFINITY);
     let centre = |share: f64| score.centres_m[((score.centres_m.len() - 1) as f64 * share) as usize] * 1e3;
     let p = &robot["perception"];
@@ -396,7 +396,7 @@ fn the_arm_goes_around_a_crate_that_only_the_camera_knows() {
     run(dir.path()).expect(0);
     let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
     let robot = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
-    assert_eq!(clearance(&trace, &robot, f64::INFINITY).0, 0.0);
+    assert_eq!(clearance(&trace, &robot, |t_s| crate_at(t_s, f64::INFINITY)).0, 0.0);
 }
 
 #[test]
@@ -506,7 +506,7 @@ fn a_joint_move_waits_until_the_crate_has_left() {
     assert!(events.contains(",resume"), "{events}");
     let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
     let robot_model = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
-    let (least_m, when_s) = clearance(&trace, &robot_model, LEAVES_S);
+    let (least_m, when_s) = clearance(&trace, &robot_model, |t_s| crate_at(t_s, LEAVES_S));
     println!("joint move: least distance to the true crate {:.0} mm at {when_s:.2} s", least_m * 1e3);
     assert!(least_m > 0.03, "{least_m} m at {when_s} s");
 }

@@ -131,8 +131,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The folder `examples` of the crate has whole programs: `1_distance`, `2_monitor`, `3_plan`, `4_joint_map`, `5_exchange`,
-//! `6_camera` (`cargo run --release -p elbowroom --example 1_distance`).
+//! The folder `examples` of the crate has whole programs: `1_distance`, `2_monitor`, `3_plan`, `4_joint_map`, `5_exchange`
+//! (`cargo run --release -p elbowroom --example 1_distance`).
 //!
 //! This is not a certified safety device.
 //!

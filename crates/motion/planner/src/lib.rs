@@ -61,7 +61,7 @@ pub use grid_path::{GridPath, GridPlannerError, GridPlannerSetting, PathEnd};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
 pub use joint_path::JointPath;
 pub use orientation_constraint::OrientationConstraint;
-pub use point_goal::PointGoal;
+pub use point_goal::{GoalLimits, PointGoal};
 pub use prioritized_planner::{
     PathConstraintSource, PrioritizedMotion, PrioritizedPlanner, PrioritizedPlannerError, RobotGoal,
 };

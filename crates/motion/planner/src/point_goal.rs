@@ -8,14 +8,26 @@ use elbowroom_scene::{Scene, SceneState};
 use elbowroom_spatial::Vec3;
 
 use crate::interpolation::length;
+use crate::{OrientationConstraint, PathConstraint};
 
 /// Steps of the search from one sampled configuration.
 const STEPS: usize = 60;
+/// Rounds in which a configuration is turned to a kept axis, and its point brought back to its place.
+const ROUNDS: usize = 20;
+
+/// What the configurations of a goal keep, beside the point at its place.
+#[derive(Debug, Default)]
+pub struct GoalLimits<'l> {
+    /// Indices of the joint values that may differ from those at the start; `None`: all.
+    pub moving: Option<&'l [usize]>,
+    /// An axis that keeps its direction.
+    pub kept: Option<&'l mut OrientationConstraint>,
+}
 
 /// A point fixed on a link, and the place where it shall end. The orientation of the link is free.
 ///
 /// ```
-/// use elbowroom_planner::{PointGoal, RrtConnect, RrtConnectSettings};
+/// use elbowroom_planner::{GoalLimits, PointGoal, RrtConnect, RrtConnectSettings};
 /// use elbowroom_kinematics::{ChainState, JointId, LinkId};
 /// use elbowroom_robot::RobotId;
 /// use elbowroom_scene::{SceneState, example};
@@ -28,7 +40,7 @@ const STEPS: usize = 60;
 /// let mut point = PointGoal { link, point_in_link: Vec3::new(-0.05, 0.0, 0.0), in_world: Vec3::ZERO };
 /// let mut place = point.placement(&scene, robot);
 /// point.in_world = place(&[0.9, 1.3, 0.6]);
-/// let goals = point.configurations(&scene, &start, robot, 16)?;
+/// let goals = point.configurations(&scene, &start, robot, 16, GoalLimits::default())?;
 /// let path = RrtConnect::new(&scene, robot)?.plan_to_any(&start, &goals, &RrtConnectSettings::default())?;
 /// let end = path.waypoints.last().unwrap();
 /// assert!(place(end).distance(point.in_world) < 1e-6);
@@ -50,6 +62,9 @@ impl PointGoal {
     /// first. Every second sample leaves the joints that do not move the point at their values in `start`. The
     /// configurations may be in collision. The same input gives the same answer.
     ///
+    /// If no configuration meets the limits on the axis too, those that only have the point at its place are returned: a
+    /// planner with this constraint refuses them, and says by how much the axis is off.
+    ///
     /// # Errors
     /// [`PointError`]: the place is not reached, with the remaining distance, or a number is not finite.
     ///
@@ -61,10 +76,13 @@ impl PointGoal {
         start: &SceneState,
         robot: RobotId,
         samples: u64,
+        limits: GoalLimits<'_>,
     ) -> Result<Vec<Vec<f64>>, PointError> {
         let r = &scene.robots()[robot.0];
         let (chain, from) = (&r.robot.chain, start.q(robot));
         let mut point = self.chain(scene, robot)?;
+        let may_move = |index: usize| limits.moving.is_none_or(|moving| moving.contains(&index));
+        point.hold(from, |index| !may_move(index));
         let point_in_root = r.base_in_world.inverse_transform_point(self.in_world);
         let target = OrientedPoint { point_in_root, normal_in_root: None };
         let mut nearest = from.to_vec();
@@ -74,11 +92,19 @@ impl PointGoal {
         let mut found = vec![nearest];
         for n in 0..samples {
             sequence.set_state(chain, &mut sample, n, 0);
-            let varies = |i: usize| moves[i] || n % 2 == 1;
+            let varies = |i: usize| may_move(i) && (moves[i] || n % 2 == 1);
             let mut q: Vec<f64> = (0..from.len()).map(|i| if varies(i) { sample.q[i] } else { from[i] }).collect();
             if point.refine(&target, &mut q, STEPS).is_ok() {
                 found.push(q);
             }
+        }
+        if let Some(kept) = limits.kept {
+            let ranges = chain.lower().into_iter().zip(chain.upper()).enumerate();
+            let range = |(i, range)| if may_move(i) { range } else { (from[i], from[i]) };
+            let ranges: Vec<(f64, f64)> = ranges.map(range).collect();
+            let meets = |q: &Vec<f64>| with_kept_axis(kept, &mut point, &target, &ranges, q.clone());
+            let meeting: Vec<_> = found.iter().filter_map(meets).collect();
+            found = if meeting.is_empty() { found } else { meeting };
         }
         found.sort_by(|a, b| length(from, a).total_cmp(&length(from, b)));
         Ok(found)
@@ -108,4 +134,28 @@ impl PointGoal {
         let chain = &scene.robots()[robot.0].robot.chain;
         PointChain::new(chain, self.link, self.point_in_link, None, SurfaceIkOptions::default())
     }
+}
+
+/// The configuration, changed within the joints' ranges until it keeps the axis and has its point at its place; `None`
+/// if that does not succeed.
+fn with_kept_axis(
+    kept: &mut OrientationConstraint,
+    point: &mut PointChain,
+    target: &OrientedPoint,
+    ranges: &[(f64, f64)],
+    mut q: Vec<f64>,
+) -> Option<Vec<f64>> {
+    for _ in 0..ROUNDS {
+        if kept.distance_m(&q, 0.0) > 0.0 {
+            return Some(q);
+        }
+        if !kept.project(&mut q) {
+            return None;
+        }
+        for (value, (lower, upper)) in q.iter_mut().zip(ranges) {
+            *value = value.max(*lower).min(*upper);
+        }
+        point.refine(target, &mut q, STEPS).ok()?;
+    }
+    None
 }

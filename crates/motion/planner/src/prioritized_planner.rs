@@ -221,7 +221,7 @@ impl<'s> PrioritizedPlanner<'s> {
     ) -> Result<TimedPath, RrtConnectError> {
         let mut exact = RrtConnect::new(self.scene, goal.robot)?;
         if let Some(constraint) = self.constraints.and_then(|all| all.constraint_of(goal.robot)) {
-            exact = exact.with_constraint(constraint);
+            exact = exact.with_constraint(vec![constraint]);
         }
         let clearance_m = settings.clearance_m;
         let mut models = CoverModels::default();

@@ -6,8 +6,8 @@ use std::time::Duration;
 use crate::common::robots::{Random, cabinet, free_values, state_at, within_limits};
 use elbowroom_kinematics::ChainState;
 use elbowroom_planner::{
-    CoverModel, CoverObstacles, CoverRrtConnect, JointPath, LinearMove, LinearMoveEnd, OrientationConstraint,
-    PathConstraint, PointGoal, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
+    CoverModel, CoverObstacles, CoverRrtConnect, GoalLimits, JointPath, LinearMove, LinearMoveEnd,
+    OrientationConstraint, PathConstraint, PointGoal, RrtConnect, RrtConnectError, RrtConnectSettings, TaskSpaceRegion,
 };
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, SweepOptions};
@@ -136,7 +136,7 @@ fn configurations_of_a_point_have_it_at_its_place_and_paths_reach_one_of_them() 
             .fold(chain.tip(), |link, _| chain.parent_joint(link).map_or(link, |j| chain.joints()[j.0].parent));
         let mut point = PointGoal { link, point_in_link: Vec3::new(0.03, -0.04, 0.05), in_world: Vec3::ZERO };
         point.in_world = place(&scene, &point, &free_values(&mut random, &scene, ROBOT).unwrap());
-        let found = point.configurations(&scene, &start, ROBOT, 32).unwrap();
+        let found = point.configurations(&scene, &start, ROBOT, 32, GoalLimits::default()).unwrap();
         assert!(found.len() > 4, "{}", found.len());
         let moves = point.moved_by(&scene, ROBOT);
         let distance = |q: &[f64]| q.iter().zip(&from).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
@@ -157,9 +157,56 @@ fn configurations_of_a_point_have_it_at_its_place_and_paths_reach_one_of_them() 
     assert!(reached >= 6, "{reached}");
     let far = PointGoal { link: chain.tip(), point_in_link: Vec3::ZERO, in_world: Vec3::X * 9.0 };
     let start = SceneState::new(&scene);
-    assert!(far.configurations(&scene, &start, ROBOT, 4).unwrap_err().to_string().contains("m and"));
+    assert!(
+        far.configurations(&scene, &start, ROBOT, 4, GoalLimits::default()).unwrap_err().to_string().contains("m and")
+    );
     let unknown = PointGoal { in_world: Vec3::splat(f64::NAN), ..far };
-    assert!(unknown.configurations(&scene, &start, ROBOT, 4).unwrap_err().to_string().contains("not finite"));
+    assert!(
+        unknown
+            .configurations(&scene, &start, ROBOT, 4, GoalLimits::default())
+            .unwrap_err()
+            .to_string()
+            .contains("not finite")
+    );
+}
+
+#[test]
+fn goals_of_a_point_keep_an_axis_and_leave_held_joints_where_they_are() {
+    let scene = cabinet();
+    let chain = &scene.robots()[0].robot.chain;
+    let mut random = Random(11);
+    let (mut kept_goals, mut held_goals) = (0, 0);
+    for _ in 0..20 {
+        let from = free_values(&mut random, &scene, ROBOT).unwrap();
+        let start = state_at(&scene, ROBOT, &from);
+        let forearm = chain.joints()[chain.parent_joint(chain.tip()).unwrap().0].parent;
+        let mut point = PointGoal { link: forearm, point_in_link: Vec3::new(0.03, -0.04, 0.05), in_world: Vec3::ZERO };
+        // A place that the first three joints reach.
+        let mut to = free_values(&mut random, &scene, ROBOT).unwrap();
+        to[3..].copy_from_slice(&from[3..]);
+        point.in_world = place(&scene, &point, &to);
+        let held = GoalLimits { moving: Some(&[0, 1, 2]), kept: None };
+        for q in point.configurations(&scene, &start, ROBOT, 32, held).unwrap() {
+            assert!(within_limits(&scene, ROBOT, &q) && q[3..] == from[3..]);
+            assert!(place(&scene, &point, &q).distance(point.in_world) < 1e-6);
+            held_goals += 1;
+        }
+        let mut state = ChainState::new(chain);
+        state.q.copy_from_slice(&from);
+        chain.forward(&mut state);
+        let axis = state.link_in_root(chain.tip()).rotation.z_axis();
+        let in_world = scene.robots()[0].base_in_world.rotation * axis;
+        let mut kept = OrientationConstraint::new(&scene, ROBOT, chain.tip(), Vec3::Z, in_world, 0.1);
+        let limits = GoalLimits { moving: None, kept: Some(&mut kept) };
+        let found = point.configurations(&scene, &start, ROBOT, 32, limits).unwrap();
+        assert!(found.iter().all(|q| within_limits(&scene, ROBOT, q)));
+        assert!(found.iter().all(|q| place(&scene, &point, q).distance(point.in_world) < 1e-6));
+        // All of them keep the axis, or none was found that does.
+        let keeping = found.iter().filter(|q| kept.distance_m(q, 0.0) > 0.0).count();
+        assert!(keeping == found.len() || keeping == 0, "{keeping} of {}", found.len());
+        kept_goals += keeping;
+    }
+    assert!(held_goals >= 20 && kept_goals > 100, "{held_goals} {kept_goals}");
 }
 
 #[test]

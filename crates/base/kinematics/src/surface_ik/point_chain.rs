@@ -87,6 +87,15 @@ impl PointChain {
         Ok(())
     }
 
+    /// Holds joints at their values in `q` (all of the chain's, rad or m): searches leave them where they are. The
+    /// closure is asked with the index of each value. A value that is not finite is refused by the searches themselves.
+    pub fn hold(&mut self, q: &[f64], is_held: impl Fn(usize) -> bool) {
+        for variable in self.arm.variables.iter_mut().filter(|variable| is_held(variable.q_index)) {
+            let value = q.get(variable.q_index).copied().unwrap_or(f64::NAN);
+            (variable.lower, variable.upper, variable.wraps) = (value, value, false);
+        }
+    }
+
     /// The link that the point is fixed on.
     pub fn link(&self) -> LinkId {
         self.link

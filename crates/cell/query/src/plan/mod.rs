@@ -19,12 +19,16 @@ use std::time::Instant;
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, QueryModel, region_constraint};
 use elbowroom_formats::Diagnostic;
-use elbowroom_planner::{CoverModels, CoverObstacles, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings};
+use elbowroom_planner::{
+    CoverModels, CoverObstacles, GoalLimits, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings,
+};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Scene, SceneState};
 use elbowroom_spatial::Pose;
 
 use crate::cover_cache::CoverCache;
+use crate::map::mapped_joints::MappedJoints;
+use map_planner::PURPOSE;
 use on_map::MapQuery;
 use path_goal::goals;
 use path_query::Query;
@@ -125,28 +129,34 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, Diagnostic
     let state = start_state(cell, &scene, id, from, request).map_err(|e| refused(e.into()))?;
     let is_searched = request.planner == PathPlanner::Grid || request.optimize;
     let line = tcp_motion::line(cell, robot, request.tcp_motion, &request.to, is_searched)?;
+    let is_on_map = request.planner == PathPlanner::Grid;
+    let mapped = is_on_map.then(|| MappedJoints::of(cell, robot, PURPOSE, &mut Vec::new())).transpose()?;
+    let mut kept = tcp_motion::kept_axis(cell, &scene, (id, from), request.tcp_motion)?;
     let goals = match line {
         Some(_) => Vec::new(),
-        None => goals(cell, &scene, &state, id, &request.to, request.options.seed)?,
+        None => {
+            let moving = mapped.as_ref().map(|mapped| &mapped.joints[..]);
+            let limits = GoalLimits { moving, kept: kept.as_mut() };
+            goals(cell, &scene, &state, id, &request.to, request.options.seed, limits)?
+        }
     };
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
     let (covers, mut models) = (CoverCache::of_user(), CoverModels::default());
-    let is_on_map = request.planner == PathPlanner::Grid;
     let model = if is_on_map { None } else { models.serving(&scene, &state, id, clearance_m, &covers) };
     let obstacles = model.map(|model| CoverObstacles::with_covers(model, &scene, &state, clearance_m, &covers));
     let period_s = request.period_s.unwrap_or(cell.timing.tick_s);
     let answer = region_constraint::at_start(cell, id, from, &request.carried, clearance_m, |constraint| {
         let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
         let mut exact = RrtConnect::new(&scene, id).map_err(|e| refused(e.into()))?;
-        let constraints = tcp_motion::constraints(cell, &scene, (id, from), request.tcp_motion, constraint)?;
+        let constraints = tcp_motion::constraints(cell, (id, from), kept, constraint)?;
         if !constraints.is_empty() {
             exact = exact.with_constraint(constraints);
         }
         let (settings, optimize) = (&request.options, request.optimize);
         let query =
             Query { scene: &scene, state: &state, goals: &goals, settings, limits: &limits, period_s, optimize, line };
-        if is_on_map {
-            let answer = MapQuery { cell, id, query, regions: &regions }.plan(exact)?;
+        if let Some(mapped) = &mapped {
+            let answer = MapQuery { cell, id, mapped, query, regions: &regions }.plan(exact)?;
             return Ok(PathAnswer { regions, ..answer });
         }
         let begin = Instant::now();

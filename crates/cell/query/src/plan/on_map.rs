@@ -10,7 +10,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, Selection, SweepOptions};
 
 use super::answer::PathAnswer;
-use super::map_planner::{MapPlanner, MapPlannerError, PURPOSE};
+use super::map_planner::{MapPlanner, MapPlannerError};
 use super::path_query::Query;
 use super::request_validation::planner_error;
 use crate::map::mapped_joints::MappedJoints;
@@ -19,6 +19,7 @@ use crate::map::mapped_joints::MappedJoints;
 pub(super) struct MapQuery<'q> {
     pub cell: &'q Cell,
     pub id: RobotId,
+    pub mapped: &'q MappedJoints,
     pub query: Query<'q>,
     /// Names of the regions that the path avoids.
     pub regions: &'q [String],
@@ -28,12 +29,12 @@ impl MapQuery<'_> {
     /// Plans a path to the first goal that is reached, or states why the first goal is not reached.
     ///
     /// # Errors
-    /// [`Diagnostic`] if the map does not have three joints or has too many cells, if the request moves other joints,
-    /// or if the start or all goals are in collision or beyond limits.
+    /// [`Diagnostic`] if the request moves other joints than those of the map, or if the start or all goals are in
+    /// collision or beyond limits.
     pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, Diagnostic> {
         let robot = &self.cell.robots[self.id.0];
         let Query { scene, state, settings, limits, period_s, .. } = &self.query;
-        let goals = self.goals(robot, &MappedJoints::of(self.cell, robot, PURPOSE, &mut Vec::new())?)?;
+        let goals = self.goals(robot)?;
         let goals = self.free_goals(goals, &mut exact)?;
         let begin = Instant::now();
         let mut planner = MapPlanner::new(self.cell, self.id, state.q(self.id), settings.clearance_m)?;
@@ -59,7 +60,8 @@ impl MapQuery<'_> {
     }
 
     /// The goals at which the other joints have their start values.
-    fn goals(&self, robot: &CellRobot, mapped: &MappedJoints) -> Result<Vec<&Vec<f64>>, Diagnostic> {
+    fn goals(&self, robot: &CellRobot) -> Result<Vec<&Vec<f64>>, Diagnostic> {
+        let mapped = self.mapped;
         let moved = |goal: &[f64]| mapped.moved_otherwise(self.query.state.q(self.id), goal);
         let goals: Vec<&Vec<f64>> = self.query.goals.iter().filter(|goal| moved(goal).is_none()).collect();
         let Some(other) = self.query.goals.first().and_then(|goal| moved(goal)).filter(|_| goals.is_empty()) else {

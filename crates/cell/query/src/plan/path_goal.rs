@@ -3,7 +3,7 @@
 use elbowroom_cell::{Cell, TcpTarget};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::surface_ik::PointError;
-use elbowroom_planner::{PointGoal, TaskSpaceRegion};
+use elbowroom_planner::{GoalLimits, PointGoal, TaskSpaceRegion};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_spatial::units::LengthUnit;
@@ -45,6 +45,7 @@ pub(super) fn goals(
     id: RobotId,
     to: &PathGoal,
     seed: u64,
+    limits: GoalLimits<'_>,
 ) -> Result<Vec<Vec<f64>>, Diagnostic> {
     let robot = &cell.robots[id.0];
     let target = match to {
@@ -53,7 +54,7 @@ pub(super) fn goals(
             return Ok(vec![q.clone()]);
         }
         PathGoal::Tcp(target) => target,
-        PathGoal::Point(point) => return point_goals(cell, scene, state, id, point),
+        PathGoal::Point(point) => return point_goals(cell, scene, state, id, point, limits),
     };
     let region = TaskSpaceRegion::at_pose(robot.flange, robot.tcp_in_flange, target.in_world);
     let found = region.configurations(scene, state, id, 0, seed);
@@ -64,8 +65,10 @@ pub(super) fn goals(
             let region = TaskSpaceRegion::at_pose(robot.flange, robot.tcp_in_flange, pose);
             !region.configurations(scene, state, id, 0, seed).is_empty()
         };
-        let hint = in_other_unit(cell, target.in_world.translation, is_reached);
-        let hint = hint.unwrap_or_else(|| "a pose within reach, or joint values".to_owned());
+        let hint = match in_other_unit(cell, target.in_world.translation, is_reached) {
+            Some((numbers, why)) => format!("{numbers},…   ({why})"),
+            None => "a pose within reach, or joint values".to_owned(),
+        };
         Diagnostic::new(&cell.file, robot.line, what).hint(hint)
     })
 }
@@ -77,9 +80,11 @@ fn point_goals(
     state: &SceneState,
     id: RobotId,
     point: &PointGoal,
+    limits: GoalLimits<'_>,
 ) -> Result<Vec<Vec<f64>>, Diagnostic> {
     let robot = &cell.robots[id.0];
-    point.configurations(scene, state, id, POINT_SAMPLES).map_err(|e| {
+    let moving = limits.moving;
+    point.configurations(scene, state, id, POINT_SAMPLES, limits).map_err(|e| {
         let link = &robot.robot.chain.links()[point.link.0];
         let why = match e {
             PointError::NotReached { position_error_m, .. } if point.moved_by(scene, id).is_empty() => {
@@ -91,15 +96,24 @@ fn point_goals(
             }
             other => other.to_string(),
         };
-        let is_reached = |in_world: Vec3| PointGoal { in_world, ..*point }.configurations(scene, state, id, 0).is_ok();
-        let hint = in_other_unit(cell, point.in_world, is_reached);
-        let hint = hint.unwrap_or_else(|| "a place that the joints before the link reach".to_owned());
+        let is_reached = |in_world: Vec3| {
+            let limits = GoalLimits { moving, kept: None };
+            PointGoal { in_world, ..*point }.configurations(scene, state, id, 0, limits).is_ok()
+        };
+        let hint = match in_other_unit(cell, point.in_world, is_reached) {
+            Some((numbers, why)) => format!("{numbers}   ({why})"),
+            None if moving.is_some() => {
+                "a place that the joints of the map reach, or the planner rrt-connect".to_owned()
+            }
+            None => "a place that the joints before the link reach".to_owned(),
+        };
         Diagnostic::new(&cell.file, robot.line, format!("the goal of robot \"{}\": {why}", robot.name)).hint(hint)
     })
 }
 
-/// The place in the cell's unit of length, if its numbers are within reach in another unit, which was probably meant.
-fn in_other_unit(cell: &Cell, in_world: Vec3, is_reached: impl Fn(Vec3) -> bool) -> Option<String> {
+/// The place in the cell's unit of length, if its numbers are within reach in another unit, which was probably meant;
+/// and that this is why.
+fn in_other_unit(cell: &Cell, in_world: Vec3, is_reached: impl Fn(Vec3) -> bool) -> Option<(String, String)> {
     let factor = |unit: LengthUnit| unit.to_metres(1.0) / cell.units.length.to_metres(1.0);
     let meant = [LengthUnit::Metre, LengthUnit::Millimetre]
         .into_iter()
@@ -107,5 +121,5 @@ fn in_other_unit(cell: &Cell, in_world: Vec3, is_reached: impl Fn(Vec3) -> bool)
         .find(|unit| is_reached(in_world * factor(*unit)))?;
     let numbers = (in_world * factor(meant)).to_array().map(|metres| cell.units.in_file_units(metres));
     let (meant, unit) = (meant.symbol(), cell.units.length.symbol());
-    Some(format!("{},…   (in {unit}, the cell's unit; {meant} seem to be meant)", numbers.join(",")))
+    Some((numbers.join(","), format!("in {unit}, the cell's unit; {meant} seem to be meant")))
 }

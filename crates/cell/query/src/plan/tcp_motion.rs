@@ -3,11 +3,10 @@
 use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_formats::Diagnostic;
-use elbowroom_kinematics::ChainState;
 use elbowroom_planner::{LinearMove, OrientationConstraint, PathConstraint};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::Scene;
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::Vec3;
 
 use super::path_goal::PathGoal;
 
@@ -51,12 +50,12 @@ pub(super) fn line(
         return Ok(None);
     }
     let PathGoal::Tcp(target) = to else {
-        let what = format!("robot \"{}\": a linear move leads to a pose of the TCP", robot.name);
-        return Err(Diagnostic::new(&cell.file, robot.line, what).hint("a pose as the goal, or a free motion"));
+        let what = "a linear move leads to a pose of the TCP";
+        return Err(refused(cell, robot, what).hint("a pose as the goal, or a free motion"));
     };
     if is_searched {
-        let what = format!("robot \"{}\": a linear move has one path, and no map is searched for it", robot.name);
-        return Err(Diagnostic::new(&cell.file, robot.line, what).hint("the planner rrt-connect, without optimizing"));
+        let what = "a linear move has one path, and no map is searched for it";
+        return Err(refused(cell, robot, what).hint("the planner rrt-connect, without optimizing"));
     }
     Ok(Some(LinearMove {
         link: robot.flange,
@@ -67,52 +66,56 @@ pub(super) fn line(
     }))
 }
 
-/// All constraints of a path: the regions closed to the robot, and a kept axis.
+/// The constraint of a kept axis, if the TCP keeps one.
 ///
 /// # Errors
-/// An axis without direction or a tolerance that is not above 0; a start in a region, from which a path with a kept axis
-/// is not planned.
-pub(super) fn constraints<'m>(
+/// An axis without direction or a tolerance that is not above 0.
+pub(super) fn kept_axis(
     cell: &Cell,
     scene: &Scene,
     (id, from): (RobotId, &[f64]),
     motion: TcpMotion,
+) -> Result<Option<OrientationConstraint>, Diagnostic> {
+    let TcpMotion::KeptAxis(KeptAxis { axis_in_tcp, tolerance_rad }) = motion else {
+        return Ok(None);
+    };
+    let robot = &cell.robots[id.0];
+    let Some(axis) = axis_in_tcp.try_normalize() else {
+        return Err(refused(cell, robot, "the axis to keep has no direction").hint("an axis other than 0, as 0,0,1"));
+    };
+    if !(tolerance_rad > 0.0 && tolerance_rad.is_finite()) {
+        let what = "the angle by which a kept axis may turn is not above 0";
+        return Err(refused(cell, robot, what).hint("an angle above 0"));
+    }
+    let axis_in_flange = robot.tcp_in_flange.rotation * axis;
+    let direction = robot.base_in_world.rotation * (robot.tcp_in_root(from).rotation * axis);
+    Ok(Some(OrientationConstraint::new(scene, id, robot.flange, axis_in_flange, direction, tolerance_rad)))
+}
+
+/// All constraints of a path: a kept axis, and the regions closed to the robot.
+///
+/// # Errors
+/// A start in a region, from which a path with a kept axis is not planned.
+pub(super) fn constraints<'m>(
+    cell: &Cell,
+    (id, from): (RobotId, &[f64]),
+    kept: Option<OrientationConstraint>,
     regions: Option<RegionConstraint<'m>>,
 ) -> Result<Vec<Box<dyn PathConstraint + 'm>>, Diagnostic> {
     let mut all: Vec<Box<dyn PathConstraint + 'm>> = Vec::new();
-    let robot = &cell.robots[id.0];
-    let refused = |what: &str, hint: &str| {
-        Err(Diagnostic::new(&cell.file, robot.line, format!("robot \"{}\": {what}", robot.name)).hint(hint))
-    };
-    if let TcpMotion::KeptAxis(KeptAxis { axis_in_tcp, tolerance_rad }) = motion {
-        let Some(axis) = axis_in_tcp.try_normalize() else {
-            return refused("the axis to keep has no direction", "an axis other than 0, as 0,0,1");
-        };
-        if !(tolerance_rad > 0.0 && tolerance_rad.is_finite()) {
-            return refused("the angle by which a kept axis may turn is not above 0", "an angle above 0");
-        }
-        let tcp_in_world = tcp_in_world(robot, from);
-        let axis_in_flange = robot.tcp_in_flange.rotation * axis;
-        let direction = tcp_in_world.rotation * axis;
-        let kept = OrientationConstraint::new(scene, id, robot.flange, axis_in_flange, direction, tolerance_rad);
-        all.push(Box::new(kept));
-    }
+    let keeps = kept.is_some();
+    all.extend(kept.map(|kept| Box::new(kept) as Box<dyn PathConstraint>));
     if let Some(mut regions) = regions {
         // Out of a region a path leads in any way that comes no deeper.
-        if !all.is_empty() && !(regions.distance_m(from, 0.0) > 0.0) {
-            let inside = regions.describe_nearest(from);
-            return refused(&format!("its start is in {inside}"), "a free motion out of it first");
+        if keeps && !(regions.distance_m(from, 0.0) > 0.0) {
+            let what = format!("its start is in {}", regions.describe_nearest(from));
+            return Err(refused(cell, &cell.robots[id.0], &what).hint("a free motion out of it first"));
         }
         all.push(Box::new(regions));
     }
     Ok(all)
 }
 
-/// The TCP at joint values.
-fn tcp_in_world(robot: &CellRobot, q: &[f64]) -> Pose {
-    let chain = &robot.robot.chain;
-    let mut state = ChainState::new(chain);
-    state.q.copy_from_slice(q);
-    chain.forward(&mut state);
-    robot.base_in_world * state.link_in_root(robot.flange) * robot.tcp_in_flange
+fn refused(cell: &Cell, robot: &CellRobot, what: &str) -> Diagnostic {
+    Diagnostic::new(&cell.file, robot.line, format!("robot \"{}\": {what}", robot.name))
 }

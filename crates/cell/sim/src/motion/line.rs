@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use elbowroom_cell::{CellIkError, CellRobot, Units};
 use elbowroom_kinematics::TrajectoryPoint;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver, IkTask};
-use elbowroom_kinematics::{Chain, ChainState, Limits};
+use elbowroom_kinematics::{Chain, Limits};
 use elbowroom_spatial::Pose;
 
 /// Largest distance between two knots, m.
@@ -112,10 +112,7 @@ impl TcpLine {
 
     fn with_task(robot: &CellRobot, units: Units, q: &[f64], to: Pose, task: IkTask) -> Result<Self, LineError> {
         let chain = &robot.robot.chain;
-        let mut state = ChainState::new(chain);
-        state.q.copy_from_slice(q);
-        chain.forward(&mut state);
-        let from = state.link_in_root(robot.flange) * robot.tcp_in_flange;
+        let from = robot.tcp_in_root(q);
         let options = IkOptions { task, restarts: 20, ..IkOptions::default() };
         let solver = IkSolver::new(chain, robot.flange, robot.tcp_in_flange, options);
         let mut line = Self {

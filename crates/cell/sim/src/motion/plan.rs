@@ -8,7 +8,7 @@ use elbowroom_cell::{
     Cell, CellRegionId, CellRobot, MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
 };
 use elbowroom_diagnostic::Diagnostic;
-use elbowroom_kinematics::{ChainState, JointTrajectory, LinkId};
+use elbowroom_kinematics::{JointTrajectory, LinkId};
 use elbowroom_query::plan::{PathGoal, PathRequest};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
@@ -387,7 +387,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
     fn line(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<TcpLine, Diagnostic> {
         let to_in_root = match to {
             MoveTarget::Tcp(target) => self.robot.base_in_world.inverse_mul(&target.in_world),
-            MoveTarget::Joints(q) => self.tcp_in_root(q),
+            MoveTarget::Joints(q) => self.robot.tcp_in_root(q),
         };
         TcpLine::new(&self.robot, self.cell.units, &self.q, to_in_root).map_err(|error| {
             let [at, length] = [error.at_m, error.length_m].map(|m| format!("{:.1} mm", m * 1000.0));
@@ -395,14 +395,6 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
             let hint = "a target within reach on this side of the arm, or a joint move to it";
             self.error(index, step, &what).hint(hint)
         })
-    }
-
-    fn tcp_in_root(&self, q: &[f64]) -> elbowroom_spatial::Pose {
-        let chain = &self.robot.robot.chain;
-        let mut state = ChainState::new(chain);
-        state.q.copy_from_slice(q);
-        chain.forward(&mut state);
-        state.link_in_root(self.robot.flange) * self.robot.tcp_in_flange
     }
 
     fn joint_target(&self, index: usize, step: &ProgramStep, to: &MoveTarget) -> Result<Vec<f64>, Diagnostic> {

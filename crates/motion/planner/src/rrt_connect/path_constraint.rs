@@ -73,32 +73,6 @@ impl<C: PathConstraint + ?Sized> PathConstraint for &mut C {
     }
 }
 
-impl<C: PathConstraint + ?Sized> PathConstraint for Box<C> {
-    fn distance_m(&mut self, q: &[f64], limit_m: f64) -> f64 {
-        (**self).distance_m(q, limit_m)
-    }
-
-    fn margin_m(&mut self, q: &[f64], limit_m: f64) -> f64 {
-        (**self).margin_m(q, limit_m)
-    }
-
-    fn motion_bound_m(&mut self, from: &[f64], to: &[f64]) -> f64 {
-        (**self).motion_bound_m(from, to)
-    }
-
-    fn describe_nearest(&mut self, q: &[f64]) -> String {
-        (**self).describe_nearest(q)
-    }
-
-    fn projected_edge_length(&self) -> Option<f64> {
-        (**self).projected_edge_length()
-    }
-
-    fn project(&mut self, q: &mut [f64]) -> bool {
-        (**self).project(q)
-    }
-}
-
 /// All of several constraints: a path satisfies each of them. Distances of different kinds (1 rad counts as 1 m) are
 /// compared as numbers, and the least one counts.
 impl PathConstraint for Vec<Box<dyn PathConstraint + '_>> {
@@ -121,7 +95,7 @@ impl PathConstraint for Vec<Box<dyn PathConstraint + '_>> {
     }
 
     fn projected_edge_length(&self) -> Option<f64> {
-        self.iter().filter_map(PathConstraint::projected_edge_length).reduce(f64::min)
+        self.iter().filter_map(|c| c.projected_edge_length()).reduce(f64::min)
     }
 
     /// Each constraint in turn: a later one may undo an earlier one, and the configuration is then rejected.

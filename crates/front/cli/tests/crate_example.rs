@@ -1,0 +1,90 @@
+//! The examples `crate` and `joint_map`: a camera's pictures, a map, and paths planned on it, as a newcomer types them.
+
+#![allow(clippy::print_stdout, reason = "figures of the evidence")]
+
+use std::path::Path;
+
+use crate::common::elbowroom;
+use crate::perceived_run::clearance;
+use elbowroom::formats::robot::{LoadOptions, load};
+use elbowroom::robot::Robot;
+use elbowroom::vision::Point2;
+
+/// Where the crate really is, by the table that nothing but this test reads.
+struct Truth(Vec<[f64; 3]>);
+
+impl Truth {
+    fn read(folder: &Path) -> Self {
+        let table = std::fs::read_to_string(folder.join("truth.csv")).unwrap();
+        let row = |line: &str| {
+            let mut cells = line.split(',').map(|cell| cell.parse().unwrap());
+            std::array::from_fn(|_| cells.next().unwrap())
+        };
+        Self(table.lines().skip(1).map(row).collect())
+    }
+
+    fn at(&self, t_s: f64) -> Point2 {
+        let next = self.0.iter().position(|row| row[0] > t_s).unwrap_or(self.0.len() - 1).max(1);
+        let ([t0, x0, y0], [t1, x1, y1]) = (self.0[next - 1], self.0[next]);
+        let share = ((t_s - t0) / (t1 - t0)).clamp(0.0, 1.0);
+        Point2::new(x0 + share * (x1 - x0), y0 + share * (y1 - y0))
+    }
+}
+
+/// Runs a cell of the folder `mine/crate`; returns its results, and the least distance of the arm from the crate, m.
+fn run(dir: &Path, cell: &str, robot: &Robot) -> (serde_json::Value, f64) {
+    let truth = Truth::read(&dir.join("mine/crate"));
+    let answer = elbowroom(dir, &["run", &format!("mine/crate/{cell}"), "--out", "out", "--json"]).expect(0).json();
+    let trace = std::fs::read_to_string(dir.join("out/trace.csv")).unwrap();
+    let (least_m, at_s) = clearance(&trace, robot, |t_s| truth.at(t_s));
+    println!("{cell}: least distance to the true crate {:.0} mm at {at_s:.2} s", least_m * 1e3);
+    (answer, least_m)
+}
+
+#[test]
+fn the_arm_plans_again_around_a_crate_that_no_file_names() {
+    let dir = tempfile::tempdir().unwrap();
+    elbowroom(dir.path(), &["example", "mine"]).expect(0);
+    let robot = load(&dir.path().join("mine/models/kr125/kr125.urdf"), &LoadOptions::default()).unwrap().robot;
+    let (answer, least_m) = run(dir.path(), "cell.toml", &robot);
+    let perception = &answer["robots"][0]["perception"];
+    println!("{perception}");
+    assert!(answer["robots"][0]["finished"] == true && least_m > 0.05, "{least_m}");
+    assert!(
+        perception["replans_in_motion"].as_u64() >= Some(3) && perception["replans_from_rest"] == 0,
+        "{perception}"
+    );
+    assert_eq!(perception["waited_s"], 0.0);
+    // Without the camera it hits the crate.
+    let cell = std::fs::read_to_string(dir.path().join("mine/crate/cell.toml")).unwrap();
+    let (camera, map) = (cell.find("[camera.above]").unwrap(), cell.find("[map.kr125]").unwrap());
+    std::fs::write(dir.path().join("mine/crate/blind.toml"), format!("{}{}", &cell[..camera], &cell[map..])).unwrap();
+    assert!(run(dir.path(), "blind.toml", &robot).1 <= 0.0);
+}
+
+#[test]
+fn the_commands_of_the_joint_map_example_work() {
+    let dir = tempfile::tempdir().unwrap();
+    elbowroom(dir.path(), &["example", "mine"]).expect(0);
+    let folder = dir.path().join("mine/joint_map");
+    let cell = std::fs::read_to_string(folder.join("cell.toml")).unwrap();
+    let typed = |line: &str| elbowroom(&folder, &line.split_whitespace().collect::<Vec<_>>()).expect(0).stdout;
+    let mut blocked = Vec::new();
+    for line in cell.lines().filter_map(|line| line.strip_prefix("#   elbowroom ")) {
+        let line = line.split_once("   (").map_or(line, |(command, _)| command);
+        println!("$ elbowroom {line}\n{}", typed(line));
+    }
+    for model in ["exact", "box", "spheres=2", "sphere", "slices"] {
+        let line = format!("map cell.toml --model {model} --json");
+        let map = elbowroom(&folder, &line.split_whitespace().collect::<Vec<_>>()).expect(0).json();
+        blocked.push(map["blocked"].as_u64().unwrap());
+    }
+    // The order of the paper's table, for an upright cube: the box is the cube itself.
+    assert!(
+        blocked[0] == blocked[1] && blocked.windows(2).all(|w| w[0] <= w[1]) && blocked[3] < blocked[4],
+        "{blocked:?}"
+    );
+    let page = std::fs::read_to_string(folder.join("map.html")).unwrap();
+    assert!(page.contains(r#""name":"link_3""#));
+    assert!(typed("run cell.toml").contains("finished at"));
+}
