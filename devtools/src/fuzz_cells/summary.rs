@@ -43,6 +43,7 @@ struct FailingCells {
     too_near: usize,
     energy_made: usize,
     cooperating: usize,
+    tilted: usize,
     any: usize,
 }
 
@@ -62,6 +63,7 @@ impl FailingCells {
                 Finding::NotHeld { .. } | Finding::OffPath { .. } | Finding::Touched { .. } | Finding::TooFast { .. }
             )
         });
+        self.tilted += has(|f| matches!(f, Finding::Tilted { .. }));
         self.any += usize::from(!findings.is_empty());
     }
 }
@@ -98,7 +100,7 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
@@ -109,11 +111,12 @@ impl Summary {
             self.failing.too_hard,
             self.failing.too_near,
             self.failing.energy_made,
-            self.failing.cooperating
+            self.failing.cooperating,
+            self.failing.tilted
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 18] {
+    fn rows(&self) -> [(&'static str, String); 19] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -132,6 +135,7 @@ impl Summary {
             ("guided too near", self.failing.too_near.to_string()),
             ("energy made", self.failing.energy_made.to_string()),
             ("cooperating wrongly", self.failing.cooperating.to_string()),
+            ("tilted", self.failing.tilted.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
@@ -238,6 +242,10 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
         Finding::TooFast { robot: r, t_s, share } => {
             format!("a joint of robot {} had {share:.6} of its speed at {t_s:.4} s", robot(r))
         }
+        Finding::Tilted { robot: r, t_s, off_rad, within_rad } => format!(
+            "the tool of robot {} was {off_rad:.4} rad off the direction that it keeps within {within_rad} at {t_s:.4} s",
+            robot(r)
+        ),
         Finding::TooHard { robot: r, joint, t_s, deceleration, limit } => format!(
             "robot {}: joint {joint} slowed down with {deceleration:.3} at {t_s:.4} s, its limit is {limit:.3} (rad/s² or m/s²)",
             robot(r)

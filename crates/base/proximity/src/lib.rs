@@ -75,6 +75,7 @@ mod point_projection;
 pub mod repair;
 mod separation;
 mod shape;
+pub mod surroundings;
 pub mod tessellate;
 mod triangle;
 mod volume_model;

@@ -33,6 +33,7 @@
 mod cell;
 mod cell_ik_error;
 pub mod configure;
+mod fence;
 mod file;
 mod fixture;
 mod fixture_shield;
@@ -90,7 +91,7 @@ pub use operator::{CellOperator, Interpolation, OperatorInput, OperatorRow, Oper
 pub use pair_file::{PairCounts, PairFile};
 pub use payload::Payload;
 pub use poses::{PoseRate, PoseTrack};
-pub use program::{MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, TcpTarget};
+pub use program::{KeptAxis, MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, TcpTarget};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
 pub use region_edits::{EditedRegions, RegionEdit, table_changes, why_not_continued};
 pub use region_id::CellRegionId;

@@ -3,7 +3,7 @@
 use elbowroom_kinematics::JointTrajectory;
 use elbowroom_kinematics::inverse::ConfigurationChoice;
 use elbowroom_robot::ObjectId;
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Pose, Vec3};
 
 use crate::CellRegionId;
 
@@ -38,6 +38,15 @@ pub struct ProgramStep {
     pub action: StepAction,
 }
 
+/// An axis of the TCP that keeps the direction that it has at the start; the TCP may turn about it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeptAxis {
+    /// The axis in the frame of the TCP; any length but 0.
+    pub axis_in_tcp: Vec3,
+    /// Largest angle from the direction at the start, rad.
+    pub tolerance_rad: f64,
+}
+
 /// Action of a step.
 #[derive(Debug, Clone)]
 pub enum StepAction {
@@ -64,6 +73,8 @@ pub enum StepAction {
         speed: f64,
         /// Planner that searches the path.
         planner: PathPlanner,
+        /// An axis that keeps its direction on the path.
+        keep: Option<KeptAxis>,
     },
     /// Switches a temporary region.
     Switch {

@@ -5,6 +5,7 @@ mod common;
 mod errors;
 mod guarded_volumes;
 mod joint_contacts;
+mod kept_inside;
 mod keys;
 mod planning_scene;
 mod seal;

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
 use elbowroom_proximity::repair::merge_targets;
+use elbowroom_proximity::surroundings::cavity;
 use elbowroom_proximity::{Shape, Sphere, tessellate::tessellate};
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -21,10 +22,12 @@ const PATCH_M: f64 = 2.0;
 /// Thickness (m) of the half-space drawn behind a plane.
 const PATCH_DEPTH_M: f64 = 0.05;
 
-/// The region's surface in the shape's frame. A plane is a thin patch.
+/// The region's surface in the shape's frame. A plane is a thin patch; of what surrounds a solid that robots must not
+/// leave, it is the inner side.
 pub fn solid(shape: &Shape) -> Surface {
     match shape {
         Shape::HalfSpace(_) => slab(-PATCH_DEPTH_M, 0.0),
+        Shape::Mesh(mesh) if let Some(inner) = cavity(mesh) => inner,
         _ => tessellate(shape, CHORD_ERROR_M),
     }
 }
@@ -40,7 +43,10 @@ pub fn warning(shape: &Shape, warning_m: f64) -> Option<Surface> {
     Some(match shape {
         Shape::HalfSpace(_) => slab(0.0, warning_m),
         Shape::Sphere(s) => tessellate(&Shape::Sphere(Sphere { radius: s.radius + warning_m }), CHORD_ERROR_M),
-        Shape::Mesh(mesh) => offset_along_normals(mesh.vertices(), mesh.triangles(), warning_m),
+        Shape::Mesh(_) => {
+            let (vertices, triangles) = solid(shape);
+            offset_along_normals(&vertices, &triangles, warning_m)
+        }
         _ => inflated(shape, warning_m),
     })
 }

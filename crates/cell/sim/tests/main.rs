@@ -9,6 +9,7 @@ mod escape_work;
 mod exchange;
 mod following;
 mod guarded_volumes;
+mod kept_inside;
 mod law;
 mod moving_objects;
 mod multi_robot_avoidance;

@@ -63,6 +63,7 @@ fn region(random: &mut Random, index: usize, center: Vector) -> RegionSpec {
         guards: vec!["arm"],
         robots: Vec::new(),
         temporary: false,
+        is_fence: false,
         follow: None,
     }
 }

@@ -107,6 +107,9 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
         Kind::Planned => {
             let mut spec = stop(random, places);
             planned::plan(&mut spec, random);
+            if let Ok(cell) = spec.parse(places.cells) {
+                planned::keep_axes(&mut spec, &cell, random);
+            }
             spec
         }
     }

@@ -6,7 +6,8 @@ use crate::fuzz_cells::spec::{BeltSpec, CellSpec, FollowSpec, StepSpec};
 /// Lets one region of some cells move; in some cells a program switches one on.
 pub fn some(spec: &mut CellSpec, random: &mut Random) {
     let Some(last) = spec.regions.len().checked_sub(1) else { return };
-    if random.percent(15) {
+    let keeps_inside = spec.regions[last].is_fence || spec.regions[last].shape.contains("keep");
+    if random.percent(15) && !keeps_inside {
         let direction = random.vector(1.0);
         if direction.iter().map(|v| v.abs()).sum::<f64>() > 0.1 {
             let start = random.one(&[0.0, 0.3]);
@@ -17,6 +18,7 @@ pub fn some(spec: &mut CellSpec, random: &mut Random) {
         // Its coordinates are now in the flange's frame.
         spec.regions[last].follow = Some(FollowSpec::Robot { robot: 1, frame: "flange" });
         spec.regions[last].robots = vec![0];
+        spec.regions[last].is_fence = false;
         spec.regions[last].shape =
             format!("shape = \"sphere\"\ncentre = [0, 0, 0]\nradius = {}\n", random.scaled(0.05, 0.4));
     }

@@ -19,7 +19,12 @@ pub fn on_the_path(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random
     let robot = random.whole(0, spec.robots.len() - 1);
     for _ in 0..TRIES {
         let at = point_on_the_path(spec, cell, robot, random)?;
-        let region = self::at(spec, robot, at, name, random);
+        let base = cell.robots[robot].base_in_world.translation;
+        let region = if random.percent(25) {
+            around(spec, robot, ([base.x, base.y, base.z], at), name, random)
+        } else {
+            self::at(spec, robot, at, name, random)
+        };
         let with = CellSpec { regions: vec![region.clone()], ..spec.clone() };
         if starts_outside(&with, cell.file.parent().unwrap_or(Path::new(""))) {
             return Some(region);
@@ -38,8 +43,42 @@ pub fn at(spec: &CellSpec, robot: usize, at: Vector, name: &str, random: &mut Ra
         guards: guards(spec, robot, random),
         robots: if random.percent(50) { vec![robot] } else { Vec::new() },
         temporary: false,
+        is_fence: false,
         follow: None,
     }
+}
+
+/// Makes a region that keeps a robot inside of a solid, or within a fence, whose border is at a place.
+fn around(
+    spec: &CellSpec,
+    robot: usize,
+    (base, border): (Vector, Vector),
+    name: &str,
+    random: &mut Random,
+) -> RegionSpec {
+    let base = base.map(rounded);
+    let apart: Vector = std::array::from_fn(|i| (border[i] - base[i]).abs());
+    let far = if apart[0] > apart[1] { 0 } else { 1 };
+    let share = random.between(0.7, 1.0);
+    let radius = rounded((share * apart[0].hypot(apart[1])).max(0.05));
+    // Square to the axis along which the border is farthest.
+    let half = |i: usize| if i == far { (share * apart[i]).max(0.05) } else { 4.0 };
+    let corner = |sign: f64| -> Vector { std::array::from_fn(|i| rounded(base[i] + sign * half(i))) };
+    let ([x0, y0, z0], [x1, y1, z1]) = (corner(-1.0), corner(1.0));
+    let low = list(&[base[0], base[1], rounded(base[2] - 3.0)]);
+    let (shape, is_fence) = match random.whole(0, 4) {
+        0 => (format!("shape = \"sphere\"\ncentre = {}\nradius = {radius}\n", list(&base)), false),
+        1 => (format!("shape = \"cylinder\"\nbase = {low}\nradius = {radius}\nheight = 6\n"), false),
+        2 => (format!("shape = \"capsule\"\nat = {}\nradius = {radius}\nheight = 2\n", list(&base)), false),
+        3 => (format!("shape = \"box\"\nfrom = [{x0}, {y0}, {z0}]\nto = [{x1}, {y1}, {z1}]\n"), false),
+        _ => {
+            let corners = format!("[[{x0}, {y0}], [{x1}, {y0}], [{x1}, {y1}], [{x0}, {y1}]]");
+            (format!("corners = {corners}\nfloor = {z0}\nheight = {}\n", rounded(z1 - z0)), true)
+        }
+    };
+    let keep = if is_fence { "" } else { "keep = \"inside\"\n" };
+    let region = at(spec, robot, border, name, random);
+    RegionSpec { shape: shape + keep, is_fence, robots: vec![robot], ..region }
 }
 
 /// Returns a point on or near a guarded solid, somewhere on the program's path.

@@ -24,6 +24,8 @@ pub enum Finding {
     OffPath { t_s: f64, off_m: f64 },
     /// A robot of a virtual robot touched something.
     Touched { robot: usize, t_s: f64 },
+    /// An axis of a tool that keeps its direction on a planned move left it.
+    Tilted { robot: usize, t_s: f64, off_rad: f64, within_rad: f64 },
     /// A joint was faster than it can, by this share of its speed.
     TooFast { robot: usize, t_s: f64, share: f64 },
     /// A joint decelerated harder than it can.

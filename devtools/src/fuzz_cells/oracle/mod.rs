@@ -13,6 +13,7 @@ pub mod findings;
 mod frame;
 mod guarded;
 mod guided;
+mod kept_axes;
 mod motion;
 mod mounted;
 mod physics;
@@ -56,6 +57,7 @@ pub fn check(
     physics::check(cell, recording, &mut findings);
     guided::check(cell, recording, &arms, &mut findings);
     cooperating::check(cell, recording, &arms, &mut findings);
+    kept_axes::check(cell, recording, &arms, &mut findings);
     Ok(findings)
 }
 

@@ -19,7 +19,7 @@ pub use guidance::{GuidanceSpec, HandRow};
 pub use object::{MotionSpec, ObjectSpec};
 pub use recording::RecordingSpec;
 pub use region::{BeltSpec, FollowSpec, RegionSpec};
-pub use robot::{DhRow, HandSpec, Model, ProgramSpec, RobotSpec, SolidSpec, StepSpec, ToolSpec};
+pub use robot::{DhRow, HandSpec, KeepSpec, Model, ProgramSpec, RobotSpec, SolidSpec, StepSpec, ToolSpec};
 pub use text::{Vector, list};
 
 /// A whole cell; metres, radians, seconds.

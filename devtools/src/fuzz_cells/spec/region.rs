@@ -23,6 +23,8 @@ pub struct RegionSpec {
     /// Indices of robots; empty for all.
     pub robots: Vec<usize>,
     pub temporary: bool,
+    /// Whether its table is one of a fence.
+    pub is_fence: bool,
     pub follow: Option<FollowSpec>,
 }
 
@@ -42,7 +44,8 @@ impl BeltSpec {
 
 impl RegionSpec {
     pub(super) fn write(&self, t: &mut String) {
-        let _ = writeln!(t, "[region.{}]\n{}", self.name, self.shape.trim_end());
+        let table = if self.is_fence { "fence" } else { "region" };
+        let _ = writeln!(t, "[{table}.{}]\n{}", self.name, self.shape.trim_end());
         let guards: Vec<String> = self.guards.iter().map(|g| format!("\"{g}\"")).collect();
         let _ = writeln!(t, "kind = \"{}\"\nwarning = {}\nguards = [{}]", self.kind, self.warning, guards.join(", "));
         if self.temporary {

@@ -82,11 +82,18 @@ pub enum SolidSpec {
     Cylinder { from: Vector, to: Vector, radius: f64 },
 }
 
+/// An axis of the tool that keeps its direction.
+#[derive(Debug, Clone, Copy)]
+pub struct KeepSpec {
+    pub axis: Vector,
+    pub within: f64,
+}
+
 #[derive(Debug, Clone)]
 pub enum StepSpec {
     Joint { to: Vec<f64>, percent: f64 },
     Linear { to: Vec<f64>, speed: f64 },
-    Planned { to: Vec<f64>, percent: f64, on_map: bool },
+    Planned { to: Vec<f64>, percent: f64, on_map: bool, keep: Option<KeepSpec> },
     Wait(f64),
     Override(f64),
     Switch { region: String, active: bool },
@@ -209,10 +216,14 @@ impl StepSpec {
                 writeln!(t, "  {{ move = \"joint\", to = {}, speed = {percent} }},", list(to))
             }
             Self::Linear { to, speed } => writeln!(t, "  {{ move = \"linear\", to = {}, speed = {speed} }},", list(to)),
-            Self::Planned { to, percent, on_map } => {
+            Self::Planned { to, percent, on_map, keep } => {
                 let planner = if *on_map { "grid" } else { "rrt-connect" };
                 let to = list(to);
-                writeln!(t, "  {{ move = \"planned\", to = {to}, speed = {percent}, planner = \"{planner}\" }},")
+                let keep = keep.map(|KeepSpec { axis, within }| {
+                    format!(", keep = {{ axis = {}, within = {within} }}", list(&axis))
+                });
+                let keep = keep.unwrap_or_default();
+                writeln!(t, "  {{ move = \"planned\", to = {to}, speed = {percent}, planner = \"{planner}\"{keep} }},")
             }
             Self::Wait(s) => writeln!(t, "  {{ wait = {s} }},"),
             Self::Override(percent) => writeln!(t, "  {{ override = {percent} }},"),

@@ -5,6 +5,7 @@ mod camera;
 mod cloud;
 mod definitions;
 mod document;
+mod fence;
 mod fixture;
 mod fixture_tool;
 mod flange;
@@ -95,8 +96,8 @@ impl CellFile {
         regions(&root, &mut cell, &mut warnings)?;
         programs(&root, &mut cell, &mut warnings)?;
         // After the programs: regions guard the objects that programs grip.
-        for ((_, t), index) in root.named("region")?.into_iter().zip(0..) {
-            guarding::check(&t, &cell, CellRegionId(index), &mut warnings)?;
+        for (t, index) in region::tables(&root)?.into_iter().zip(0..) {
+            guarding::check(&t.table, &cell, CellRegionId(index), &mut warnings)?;
         }
         maps(&root, &mut cell)?;
         avoidance::read(&root, &mut cell)?;
@@ -264,8 +265,8 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) ->
         pose_tracks: Vec::new(),
     };
     let mut regions = Vec::new();
-    for (name, t) in root.named("region")? {
-        regions.push(region::read(name, &t, cell.units, &mut known, warnings)?);
+    for table in region::tables(root)? {
+        regions.push(table.read(cell.units, &mut known, warnings)?);
     }
     cell.frame_sources.pose_tracks = known.pose_tracks;
     cell.regions = regions;

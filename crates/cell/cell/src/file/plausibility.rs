@@ -5,11 +5,13 @@ use std::ops::Range;
 use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::Table;
 use elbowroom_kinematics::{ChainState, JointKind, LinkId};
-use elbowroom_proximity::{Shape, Sphere, separation, within};
+use elbowroom_proximity::surroundings::cavity;
+use elbowroom_proximity::{Shape, Sphere, TriMesh, separation, within};
 use elbowroom_robot::{Collider, ObjectId};
 use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
 
+use super::region;
 use crate::frames::Frames;
 use crate::{Cell, CellRegion, CellRobot, Follow};
 
@@ -52,8 +54,9 @@ pub(super) fn check(
             }
         }
     }
-    for (region, (_, t)) in cell.regions.iter().zip(root.named("region")?) {
-        plausible.region(&t, region, warnings);
+    for (region, t) in cell.regions.iter().zip(region::tables(root)?) {
+        plausible.surroundings(&t.table, region)?;
+        plausible.region(&t.table, region, warnings);
     }
     Ok(())
 }
@@ -125,7 +128,9 @@ struct PlausibilityCheck<'a> {
 impl PlausibilityCheck<'_> {
     fn region(&self, t: &Table<'_>, r: &CellRegion, warnings: &mut Vec<Diagnostic>) {
         let region = &r.region;
-        let implausibility = size(&region.shape).or_else(|| {
+        // The surroundings of a solid are as large as no cell.
+        let kept_in = kept_in(&region.shape);
+        let implausibility = size(kept_in.as_ref().unwrap_or(&region.shape)).or_else(|| {
             let in_source = region.anchor * region.shape_in_anchor;
             let more_m = region.warning_m;
             match r.follow {
@@ -141,6 +146,29 @@ impl PlausibilityCheck<'_> {
         });
         let what = format!("region \"{}\"", region.name);
         self.warn(t, &what, implausibility, warnings);
+    }
+
+    /// Refuses a robot that could get beyond the surroundings of the solid in which a region keeps it.
+    fn surroundings(&self, t: &Table<'_>, r: &CellRegion) -> Result<()> {
+        if kept_in(&r.region.shape).is_none() {
+            return Ok(());
+        }
+        let bounds = r.region.shape.aabb(&(r.region.anchor * r.region.shape_in_anchor));
+        for robot in &r.robots {
+            let Reach { base, radius_m } = self.reaches[robot.0];
+            let room = (base - bounds.min).min(bounds.max - base).min_element();
+            if !(radius_m < room) {
+                let name = &self.cell.robots[robot.0].name;
+                let what = format!(
+                    "region \"{}\" keeps robots inside of it by a wall of {}, and robot \"{name}\" may be beyond it",
+                    r.region.name,
+                    self.cell.units.show_length(region::SURROUNDINGS_M)
+                );
+                let hint = "limits for sliding joints, or `robots` without the robots that are elsewhere";
+                return Err(t.error(what).hint(hint));
+            }
+        }
+        Ok(())
     }
 
     fn object(&self, t: &Table<'_>, id: ObjectId, warnings: &mut Vec<Diagnostic>) {
@@ -226,6 +254,13 @@ impl PlausibilityCheck<'_> {
         };
         warnings.push(warning);
     }
+}
+
+/// The solid in which a region with `keep = "inside"` keeps robots.
+fn kept_in(shape: &Shape) -> Option<Shape> {
+    let Shape::Mesh(mesh) = shape else { return None };
+    let (vertices, triangles) = cavity(mesh)?;
+    TriMesh::new(vertices, triangles).ok().map(|mesh| Shape::Mesh(mesh.into()))
 }
 
 /// The table at the line of a key, or at its own line if the key is missing.

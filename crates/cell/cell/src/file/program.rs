@@ -7,12 +7,14 @@ use elbowroom_kinematics::JointTrajectory;
 use elbowroom_monitor::Life;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
-use super::schema::{self, STEPS, names};
+use super::schema::{self, KEPT_AXIS, STEPS, names};
 use super::{goal, models};
 use crate::{
-    Cell, CellRegion, CellRegionId, CellRobot, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, Units,
+    Cell, CellRegion, CellRegionId, CellRobot, KeptAxis, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
+    Units,
 };
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -120,6 +122,10 @@ fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction
     if let Some(v) = planner.as_ref().filter(|_| kind != Movement::Planned) {
         return Err(v.error("is of planned moves only").hint("move = \"planned\", or no `planner`"));
     }
+    let keep = t.get("keep");
+    if let Some(v) = keep.as_ref().filter(|_| kind != Movement::Planned) {
+        return Err(v.error("is of planned moves only").hint("move = \"planned\", or no `keep`"));
+    }
     let speed = t.get("speed");
     if kind == Movement::Linear {
         let speed = speed.map_or(Ok(LINEAR_SPEED), |v| units.positive_length(&v))?;
@@ -134,7 +140,27 @@ fn movement(t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<StepAction
     }
     let planners = [("rrt-connect", PathPlanner::RrtConnect), ("grid", PathPlanner::Grid)];
     let planner = planner.map_or(Ok(PathPlanner::default()), |v| v.word(&planners))?;
-    Ok(StepAction::Planned { to, speed, planner })
+    let keep = keep.map(|v| kept_axis(&v, units)).transpose()?;
+    Ok(StepAction::Planned { to, speed, planner, keep })
+}
+
+/// The axis that keeps its direction on a planned move.
+fn kept_axis(v: &Value<'_>, units: Units) -> Result<KeptAxis> {
+    const EXAMPLE: &str = "keep = { axis = \"z\", within = 5 }";
+    let t = v.table(EXAMPLE)?;
+    t.only(&names(&[KEPT_AXIS]))?;
+    let axis = t.need("axis", "axis = \"z\"   (or a vector in the frame of the tool)")?;
+    let axis_in_tcp = if axis.is_list() {
+        axis.three()?.try_normalize().ok_or_else(|| axis.error("has no length").hint("axis = [0, 0, 1]"))?
+    } else {
+        axis.word(&[("x", Vec3::X), ("y", Vec3::Y), ("z", Vec3::Z)])?
+    };
+    let within = t.need("within", "within = 5   (an angle)")?;
+    let tolerance_rad = units.angle.to_radians(within.positive()?);
+    if tolerance_rad >= std::f64::consts::PI {
+        return Err(within.error("is half a turn or more: every direction would do").hint("within = 5"));
+    }
+    Ok(KeptAxis { axis_in_tcp, tolerance_rad })
 }
 
 fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {

@@ -1,16 +1,17 @@
-//! `[region.NAME]` and `[encoder.NAME]`.
+//! `[region.NAME]`, `[fence.NAME]` and `[encoder.NAME]`.
 
 use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_monitor::{Guards, Life, Region, RegionKind, SlotId, SourceLimits};
+use elbowroom_proximity::surroundings::surroundings;
 use elbowroom_proximity::{ConvexHull, Shape};
 use elbowroom_robot::RobotId;
-use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
+use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::definitions::{Definitions, robot_id};
-use super::schema::{ENCODER, REGION, REGION_SHAPES, names};
-use super::{follow, models};
+use super::schema::{ENCODER, FENCE, REGION, REGION_SHAPES, names};
+use super::{fence, follow, models};
 use crate::{CellRegion, Encoder, Follow, Travel, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -23,15 +24,56 @@ const LARGE_WARNING_M: f64 = 10.0;
 const MIN_EXCHANGE_WARNING_M: f64 = 1e-3;
 /// Hysteresis above which a warning is issued, m.
 const LARGE_HYSTERESIS_M: f64 = 1.0;
+/// Thickness of the wall around a solid that robots must not leave, m: no robot gets through it.
+pub(super) const SURROUNDINGS_M: f64 = 50.0;
+/// By how much the inside of a curved region is smaller than the region, at most, m.
+const CHORD_ERROR_M: f64 = 1e-3;
+/// Keys of a region that a fence does not have: it is a solid of its own in the world.
+const NOT_OF_A_FENCE: [&str; 5] = ["shape", "rpy", "quaternion", "keep", "follow"];
 
-pub(super) fn read(
-    name: &str,
+/// A table that describes a region.
+pub(super) struct RegionTable<'t> {
+    name: &'t str,
+    pub table: Table<'t>,
+    is_fence: bool,
+}
+
+/// The tables of all regions, in the order of the cell's: `[region.NAME]`, then `[fence.NAME]`.
+pub(super) fn tables<'t>(root: &Table<'t>) -> Result<Vec<RegionTable<'t>>> {
+    let mut tables: Vec<RegionTable<'t>> = Vec::new();
+    for (word, is_fence) in [("region", false), ("fence", true)] {
+        for (name, table) in root.named(word)? {
+            if let Some(first) = tables.iter().find(|first| first.name == name) {
+                let line = first.table.line;
+                let what = format!("a fence is a region, and \"{name}\" is the name of the one in line {line}");
+                return Err(table.error(what).hint("another name for one of them"));
+            }
+            tables.push(RegionTable { name, table, is_fence });
+        }
+    }
+    Ok(tables)
+}
+
+impl RegionTable<'_> {
+    pub fn read(
+        &self,
+        units: Units,
+        known: &mut Definitions<'_>,
+        warnings: &mut Vec<Diagnostic>,
+    ) -> Result<CellRegion> {
+        let region = if self.is_fence { walls } else { solid }(self.name, &self.table, units)?;
+        read(region, &self.table, units, known, warnings)
+    }
+}
+
+/// Reads what a table says of its region beside the solid.
+fn read(
+    mut region: Region,
     t: &Table<'_>,
     units: Units,
     known: &mut Definitions<'_>,
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<CellRegion> {
-    let mut region = solid(name, t, units)?;
     region.kind = kind(t)?;
     region.life = t
         .get("life")
@@ -44,8 +86,16 @@ pub(super) fn read(
     let channel = |key: &str| t.get(key).map(|v| v.whole(0, 63).map(|c| c as u8)).transpose();
     region.output = channel("output")?;
     region.warning_output = channel("warning_output")?;
-    check_warning(name, t, &region, warnings)?;
+    check_warning(t, &region, warnings)?;
     let followed = t.get("follow").map(|v| follow::read(&v, units, known, warnings)).transpose()?;
+    if let Some(v) = t.get("keep").filter(|_| is_inside(t)) {
+        kept_inside(&mut region, &v)?;
+        let moves = t.get("follow").filter(|_| matches!(region.shape, Shape::Mesh(_)));
+        if let Some(follow) = moves {
+            let what = "moves a region that keeps robots inside of it";
+            return Err(follow.error(what).hint("keep = \"outside\", or a region that does not move"));
+        }
+    }
     let (follow, source_limits) = followed.map_or((None, SourceLimits::default()), |(f, l)| (Some(f), l));
     let robots = robots(t, known, follow)?;
     Ok(CellRegion { region, line: t.line, robots, follow, source_limits })
@@ -72,7 +122,8 @@ fn thickness(v: &Value<'_>, units: Units, plausible: f64, warnings: &mut Vec<Dia
     Ok(metres)
 }
 
-fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<Diagnostic>) -> Result<()> {
+fn check_warning(t: &Table<'_>, region: &Region, warnings: &mut Vec<Diagnostic>) -> Result<()> {
+    let name = &region.name;
     match region.kind {
         // A robot without the grant stops half a millimetre before the border, and must have requested the grant by
         // then.
@@ -91,11 +142,41 @@ fn check_warning(name: &str, t: &Table<'_>, region: &Region, warnings: &mut Vec<
     }
 }
 
+fn is_inside(t: &Table<'_>) -> bool {
+    t.get("keep").is_some_and(|v| v.text().is_ok_and(|word| word == "inside"))
+}
+
+/// Turns a region around: what was inside is free, and everything else is the region.
+fn kept_inside(region: &mut Region, v: &Value<'_>) -> Result<()> {
+    if matches!(region.kind, RegionKind::Exchange { .. }) {
+        return Err(v
+            .error("does not suit an exchange region, into which robots go one by one")
+            .hint("keep = \"outside\""));
+    }
+    if matches!(region.shape, Shape::HalfSpace(_)) {
+        let turned_over = Pose::new(Rotation::from_rpy(std::f64::consts::PI, 0.0, 0.0), Vec3::ZERO);
+        region.shape_in_anchor = region.shape_in_anchor * turned_over;
+        return Ok(());
+    }
+    let wall = surroundings(&region.shape, CHORD_ERROR_M, SURROUNDINGS_M).map_err(|e| {
+        v.error(format!("\"inside\" of the region: {e}")).hint("a closed mesh, or shape = \"convex\" for its hull")
+    })?;
+    region.shape = Shape::Mesh(wall.into());
+    Ok(())
+}
+
+fn walls(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
+    let common = REGION.iter().filter(|key| !NOT_OF_A_FENCE.contains(&key.name)).map(|key| key.name);
+    t.only(&common.chain(names(&[FENCE])).collect::<Vec<_>>())?;
+    fence::solid(name, t, units)
+}
+
 fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
     let shape = t.need("shape", "shape = \"cylinder\"   (or sphere, plane, box, capsule, mesh, convex)")?;
     let words: Vec<_> = REGION_SHAPES.iter().map(|s| (s.word, s)).collect();
     let own = shape.word(&words)?;
     t.only(&names(&[REGION, own.keys]))?;
+    t.get("keep").map_or(Ok(()), |v| v.word(&[("outside", ()), ("inside", ())]))?;
     let rotation = units.rotation(t)?;
     let point = |key: &str| units.point(&t.need(key, &format!("{key} = [900, 0, 0]"))?);
     let radius = || units.positive_length(&t.need("radius", "radius = 150")?);

@@ -5,6 +5,7 @@
 //! volumes.
 
 mod answer;
+mod kept_axis;
 mod map_planner;
 mod on_map;
 mod path_goal;
@@ -34,13 +35,14 @@ use path_goal::goals;
 use path_query::Query;
 
 pub use answer::{PathAnswer, write_csv};
-pub use elbowroom_cell::PathPlanner;
+pub use elbowroom_cell::{KeptAxis, PathPlanner};
+pub use kept_axis::KeptDirection;
 pub use map_planner::{MapPlanner, MapPlannerError};
 pub use path_goal::PathGoal;
 pub use point_path::PointPath;
 pub use request_validation::select_robot;
 pub use several::{RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
-pub use tcp_motion::{KeptAxis, TcpMotion};
+pub use tcp_motion::TcpMotion;
 
 /// A request for a path.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,13 +1,13 @@
 //! How the TCP moves on a path: freely, on a straight line, or with an axis that keeps its direction.
 
 use elbowroom_cell::region_constraint::RegionConstraint;
-use elbowroom_cell::{Cell, CellRobot};
+use elbowroom_cell::{Cell, CellRobot, KeptAxis};
 use elbowroom_formats::Diagnostic;
 use elbowroom_planner::{LinearMove, OrientationConstraint, PathConstraint};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::Scene;
-use elbowroom_spatial::Vec3;
 
+use super::kept_axis::KeptDirection;
 use super::path_goal::PathGoal;
 
 /// Largest distance of the TCP from a straight line between waypoints, m, and rotation from the orientation there, rad.
@@ -23,15 +23,6 @@ pub enum TcpMotion {
     Linear,
     /// An axis of the TCP keeps its direction in the world.
     KeptAxis(KeptAxis),
-}
-
-/// An axis of the TCP that keeps the direction that it has at the start; the TCP may turn about it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KeptAxis {
-    /// The axis in the frame of the TCP; any length but 0.
-    pub axis_in_tcp: Vec3,
-    /// Largest angle from the direction at the start, rad.
-    pub tolerance_rad: f64,
 }
 
 /// The straight line to a goal, if the TCP moves on one; `is_searched` if the request is one for a search on a map, or
@@ -76,20 +67,18 @@ pub(super) fn kept_axis(
     (id, from): (RobotId, &[f64]),
     motion: TcpMotion,
 ) -> Result<Option<OrientationConstraint>, Diagnostic> {
-    let TcpMotion::KeptAxis(KeptAxis { axis_in_tcp, tolerance_rad }) = motion else {
+    let TcpMotion::KeptAxis(kept) = motion else {
         return Ok(None);
     };
     let robot = &cell.robots[id.0];
-    let Some(axis) = axis_in_tcp.try_normalize() else {
+    if kept.axis_in_tcp.try_normalize().is_none() {
         return Err(refused(cell, robot, "the axis to keep has no direction").hint("an axis other than 0, as 0,0,1"));
-    };
-    if !(tolerance_rad > 0.0 && tolerance_rad.is_finite()) {
+    }
+    if !(kept.tolerance_rad > 0.0 && kept.tolerance_rad.is_finite()) {
         let what = "the angle by which a kept axis may turn is not above 0";
         return Err(refused(cell, robot, what).hint("an angle above 0"));
     }
-    let axis_in_flange = robot.tcp_in_flange.rotation * axis;
-    let direction = robot.base_in_world.rotation * (robot.tcp_in_root(from).rotation * axis);
-    Ok(Some(OrientationConstraint::new(scene, id, robot.flange, axis_in_flange, direction, tolerance_rad)))
+    Ok(Some(KeptDirection::of(robot, kept, from).constraint(scene, id)))
 }
 
 /// All constraints of a path: a kept axis, and the regions closed to the robot.

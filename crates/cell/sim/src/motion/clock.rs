@@ -220,8 +220,8 @@ impl ProgramClock {
     /// The motion that is executed now.
     pub fn executed_motion(&self) -> ExecutedMotion {
         let planned = match self.plan.steps.get(self.step) {
-            Some(PlanStep::Planned { play, speed, planner }) => {
-                Some(PlannedGoal { q: play.q(play.duration()), speed: *speed, planner: *planner })
+            Some(PlanStep::Planned { play, speed, planner, keep }) => {
+                Some(PlannedGoal { q: play.q(play.duration()), speed: *speed, planner: *planner, keep: *keep })
             }
             _ => None,
         };

@@ -9,7 +9,7 @@ use elbowroom_cell::{
 };
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::{JointTrajectory, LinkId};
-use elbowroom_query::plan::{PathGoal, PathRequest};
+use elbowroom_query::plan::{KeptAxis, KeptDirection, PathGoal, PathRequest, TcpMotion};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
 
@@ -46,6 +46,8 @@ pub enum PlanStep {
         speed: f64,
         /// Planner that found its path, and that searches for another one if the path is blocked.
         planner: PathPlanner,
+        /// The direction that an axis of the TCP keeps on it.
+        keep: Option<KeptDirection>,
     },
     /// Switches a region.
     Switch {
@@ -171,6 +173,15 @@ struct ProgramPlanner<'p, 'a> {
     parts: PlannedParts<'a>,
 }
 
+/// What a step says of its planned move.
+#[derive(Clone, Copy)]
+struct PlannedMove<'s> {
+    to: &'s MoveTarget,
+    speed: f64,
+    planner: PathPlanner,
+    keep: Option<KeptAxis>,
+}
+
 /// A planned move, identified by its step, its start joint values and the flange.
 struct PlannedMoveEntry {
     step: usize,
@@ -237,9 +248,11 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
                 self.change_tool(i, step, *tool)?;
                 PlanStep::Tool(*tool)
             }
-            StepAction::Planned { to, speed, planner } => {
-                let play = self.planned(i, step, (to, *speed, *planner))?;
-                PlanStep::Planned { play, speed: *speed, planner: *planner }
+            StepAction::Planned { to, speed, planner, keep } => {
+                let (speed, planner, keep) = (*speed, *planner, *keep);
+                let kept = keep.map(|keep| KeptDirection::of(&self.robot, keep, &self.q));
+                let play = self.planned(i, step, PlannedMove { to, speed, planner, keep })?;
+                PlanStep::Planned { play, speed, planner, keep: kept }
             }
         })
     }
@@ -287,7 +300,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         &mut self,
         index: usize,
         step: &ProgramStep,
-        planned: (&MoveTarget, f64, PathPlanner),
+        planned: PlannedMove<'_>,
     ) -> Result<Arc<Playback>, Diagnostic> {
         let origin = PathOrigin {
             robot: self.id,
@@ -306,7 +319,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         &self,
         index: usize,
         step: &ProgramStep,
-        (to, speed, planner): (&MoveTarget, f64, PathPlanner),
+        PlannedMove { to, speed, planner, keep }: PlannedMove<'_>,
     ) -> Result<Playback, Diagnostic> {
         let carried = self.parts.carried().map_err(|e| self.part_error(index, step, e))?;
         let cell = self.cell_now();
@@ -319,6 +332,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
                 MoveTarget::Tcp(target) => PathGoal::Tcp(target.clone()),
             },
             planner,
+            tcp_motion: keep.map_or(TcpMotion::Free, TcpMotion::KeptAxis),
             speed,
             placed: self.parts.placed(),
             carried,

@@ -1,6 +1,7 @@
 //! The motion that a robot executes, at one instant.
 
 use elbowroom_cell::PathPlanner;
+use elbowroom_query::plan::KeptDirection;
 
 use super::path_ahead::PathAhead;
 
@@ -30,4 +31,6 @@ pub struct PlannedGoal {
     pub speed: f64,
     /// How its path is planned.
     pub planner: PathPlanner,
+    /// The direction that an axis of the TCP keeps on it.
+    pub keep: Option<KeptDirection>,
 }

@@ -3,14 +3,13 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use elbowroom_cell::region_constraint::RegionConstraint;
 use elbowroom_cell::trajectory::{Playback, motion_bounds};
 use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointLimits};
 use elbowroom_perception::motion_entry::{acceleration_distance, first_root};
 use elbowroom_planner::{
-    CoverModels, CoverObstacles, JointPath, RobotPlanner, RrtConnect, RrtConnectSettings, TimedPath,
+    CoverModels, CoverObstacles, JointPath, PathConstraint, RobotPlanner, RrtConnect, RrtConnectSettings, TimedPath,
 };
 use elbowroom_proximity::Shape;
 use elbowroom_query::CoverCache;
@@ -206,9 +205,11 @@ impl<'a> PathReplanner<'a> {
         placed.state.set_q(&placed.scene, self.robot, &departure.from).ok()?;
         let boxes: Vec<_> = solids.iter().flat_map(|solid| solid.boxes.iter().cloned()).collect();
         let found = attempts(in_motion, regions.are_none(), deadline).find_map(|attempt| {
-            let constraint = regions.constraint(attempt.warning_share);
+            let regions = regions.constraint(attempt.warning_share);
+            let kept = goal.keep.map(|keep| keep.constraint(&placed.scene, self.robot));
+            let constraints = kept.map(boxed).into_iter().chain(regions.map(boxed)).collect();
             let by = (goal.planner, &limits[..]);
-            self.attempt((&placed, &boxes), &departure, &goal.q, by, (&attempt.settings, constraint))
+            self.attempt((&placed, &boxes), &departure, &goal.q, by, (&attempt.settings, constraints))
         })?;
         let play = Arc::new(Playback::new(found.trajectory, &self.motion_bounds));
         (Instant::now() <= deadline).then_some(NewPath { replaces: motion.path, play, in_motion })
@@ -220,12 +221,12 @@ impl<'a> PathReplanner<'a> {
         departure: &Departure,
         goal: &[f64],
         (planner, limits): (PathPlanner, &[JointLimits]),
-        (settings, constraint): (&RrtConnectSettings, Option<RegionConstraint<'_>>),
+        (settings, constraints): (&RrtConnectSettings, Vec<Box<dyn PathConstraint + '_>>),
     ) -> Option<TimedPath> {
         let PlacedScene { scene, state, .. } = placed;
         let mut exact = RrtConnect::new(scene, self.robot).ok()?;
-        if let Some(constraint) = constraint {
-            exact = exact.with_constraint(constraint);
+        if !constraints.is_empty() {
+            exact = exact.with_constraint(constraints);
         }
         let (tick_s, clearance_m) = (self.tick_s, settings.clearance_m);
         if planner == PathPlanner::Grid {
@@ -241,6 +242,10 @@ impl<'a> PathReplanner<'a> {
         let path = planner.plan_to_any(state, &[goal], settings).ok()?;
         planner.time_parametrize(state, with_departure(path, departure), limits, tick_s, settings).ok()
     }
+}
+
+fn boxed<'c>(constraint: impl PathConstraint + 'c) -> Box<dyn PathConstraint + 'c> {
+    Box::new(constraint)
 }
 
 fn with_departure(path: JointPath, departure: &Departure) -> JointPath {

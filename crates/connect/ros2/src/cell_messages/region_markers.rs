@@ -2,6 +2,7 @@
 
 use elbowroom_cell::Cell;
 use elbowroom_monitor::RegionKind;
+use elbowroom_proximity::surroundings::cavity;
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere, tessellate::tessellate};
 use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_status::{CellStatus, RegionStatus};
@@ -186,7 +187,11 @@ fn shape_markers(shape: &Shape, pose: &Pose) -> Vec<Marker> {
 }
 
 fn triangles(shape: &Shape, pose: &Pose) -> Marker {
-    let (vertices, triangles) = tessellate(shape, CHORD_ERROR_M);
+    let inner = match shape {
+        Shape::Mesh(mesh) => cavity(mesh),
+        _ => None,
+    };
+    let (vertices, triangles) = inner.unwrap_or_else(|| tessellate(shape, CHORD_ERROR_M));
     let points = triangles.iter().flatten().map(|i| Point::from(vertices[*i as usize])).collect();
     Marker { r#type: Marker::TRIANGLE_LIST, pose: pose.into(), scale: [1.0; 3].into(), points, ..Marker::default() }
 }

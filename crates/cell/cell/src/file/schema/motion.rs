@@ -10,6 +10,12 @@ pub(in crate::file) const PROGRAM: &[Key] = &[
     key("trajectory", "path or table", "`steps` or `trajectory` required", "a recording: CSV with `t_s` and one column per joint name in any order; seconds, radians, metres. Other formats: a table, below"),
 ];
 
+#[rustfmt::skip] // a row per key, as in the document
+pub(in crate::file) const KEPT_AXIS: &[Key] = &[
+    key("axis", "`\"x\"` `\"y\"` `\"z\"` or a vector", "required", "the axis, in the frame of the tool centre point"),
+    key("within", "angle, below half a turn", "required", "largest angle from its direction at the start of the move"),
+];
+
 /// The kinds of steps: the word is the first key of each.
 #[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const STEPS: &[Variant] = &[
@@ -18,6 +24,7 @@ pub(in crate::file) const STEPS: &[Variant] = &[
         key("to", "joint values, pose or state", "required in a move", "the goal"),
         key("speed", "percent; linear: length per second", "100; linear: 250 mm/s", "percent of each joint's speed; of a linear move the speed of the TCP"),
         key("planner", "`\"rrt-connect\"` `\"grid\"`", "`\"rrt-connect\"`", "of a planned move; `\"grid\"`: through free cells of the robot's [map](plan.md#on-the-map)"),
+        key("keep", "table", "none", "of a planned move: an axis of the tool that [keeps its direction](#keeping-an-axis)"),
     ], ""),
     variant("region", &[
         key("region", "name", "", "switches a temporary region from the next tick on"),

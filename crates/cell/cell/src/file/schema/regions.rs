@@ -8,6 +8,7 @@ pub(in crate::file) const REGION: &[Key] = &[
     key("shape", "a shape of the table below", "required", "which keys give its place and size"),
     key("rpy", "vector of angles", "zero", "turns the region, about the point that the table below names"),
     key("quaternion", "`[x, y, z, w]`", "none", "instead of `rpy`"),
+    key("keep", "`\"outside\"` `\"inside\"`", "`\"outside\"`", "which side is free: with `\"inside\"` everything but the solid is the region"),
     key("kind", "`\"forbidden\"` `\"monitored\"` `\"exchange\"`", "`\"forbidden\"`: the safe one", "override 0 at the surface · outputs only · open to one robot at a time"),
     key("life", "`\"permanent\"` `\"temporary\"`", "`\"permanent\"`: the safe one", "a temporary region starts inactive, in `live` [as it was](live.md#how-a-robot-is-guarded); programs switch it"),
     key("warning", "length, at most 10 km; above 10 m with a warning", "0, with a warning if forbidden; exchange: required, at least 1 mm", "thickness δ of the warning zone"),
@@ -32,6 +33,24 @@ pub(in crate::file) const REGION_SHAPES: &[Variant] = &[
     variant("capsule", &[AT, RADIUS, HEIGHT], "`height` is without the caps; turned about `at`"),
     variant("mesh", &[AT, MESH, MESH_UNIT], "a closed mesh; turned about `at`"),
     variant("convex", &[AT, MESH, MESH_UNIT], "the convex hull of the mesh; turned about `at`"),
+];
+
+/// Walls of a fence, beside the keys of a region.
+#[rustfmt::skip] // a row per key, as in the document
+pub(in crate::file) const FENCE: &[Key] = &[
+    key("corners", "list of `[x, y]`", "required, three or more", "the polygon around what is free, in the world; the walls are outside of it"),
+    key("height", "length", "required", "of the walls"),
+    key("floor", "length", "0", "height of their lower edge in the world"),
+    key("thickness", "length", "50 mm", "of the walls"),
+    key("gates", "list of tables", "none", "openings"),
+];
+
+#[rustfmt::skip] // a row per key, as in the document
+pub(in crate::file) const GATE: &[Key] = &[
+    key("from", "`[x, y]`", "required", "an end of the opening, on the line of a wall (within 10 mm)"),
+    key("to", "`[x, y]`", "required", "the other end, on the same wall"),
+    key("bottom", "length", "that of the walls", "height of its lower edge in the world"),
+    key("top", "length", "that of the walls", "height of its upper edge in the world"),
 ];
 
 /// Sources of a region that moves.

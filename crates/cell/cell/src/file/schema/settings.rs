@@ -14,6 +14,7 @@ pub(in crate::file) const TOP: &[Key] = &[
     key("object", "tables", "none", "solid objects: [`[object.NAME]`](#objectname)"),
     key("scene", "tables", "none", "objects of planning scenes: [`[scene.NAME]`](#scenename)"),
     key("region", "tables", "none", "regions: [`[region.NAME]`](#regionname)"),
+    key("fence", "tables", "none", "fences, which are regions: [`[fence.NAME]`](#fencename)"),
     key("encoder", "tables", "none", "conveyors: [`[encoder.NAME]`](#encodername)"),
     key("fixture", "tables", "none", "virtual fixtures: [`[fixture.NAME]`](#fixturename)"),
     key("force", "tables", "none", "forces between guided tools and their surroundings: [`[force.NAME]`](#forcename)"),
