@@ -1,6 +1,6 @@
 // Two arms of one model side by side: collision and distance of random configurations, as CSV.
 //
-//     two_arms MODEL METRES STATES [SEED]    two arms, METRES apart along y
+//     two_arms MODEL METRES STATES [SEED]    two arms, METRES apart along y, with the .srdf beside the model
 //     two_arms CELL.toml STATES [SEED]       the robots of a cell
 //
 // The columns are the joint values, then those of `elbowroom query --ask distance`, then the pair that
@@ -8,12 +8,14 @@
 
 #include <elbowroom.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <random>
 #include <string>
 #include <thread>
@@ -27,8 +29,11 @@ using elbowroom::Model;
 
 Model two_arms(const char *path, double metres)
 {
-    const auto arm = [path](const char *name, double y) {
-        return elbowroom_robot_file{name, path, nullptr, nullptr, nullptr, {{0.0, y, 0.0}, {0.0, 0.0, 0.0, 1.0}}};
+    const std::string srdf = std::filesystem::path(path).replace_extension(".srdf").string();
+    const char *disabled_pairs = std::filesystem::exists(srdf) ? srdf.c_str() : nullptr;
+    const auto arm = [&](const char *name, double y) {
+        const elbowroom_pose base{{0.0, y, 0.0}, {0.0, 0.0, 0.0, 1.0}};
+        return elbowroom_robot_file{name, path, disabled_pairs, nullptr, nullptr, base};
     };
     return Model::load_robots({arm("left", 0.0), arm("right", metres)});
 }
