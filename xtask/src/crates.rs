@@ -12,7 +12,7 @@ pub const GROUPS: [(&str, &[&str]); 7] = [
     ("motion", &["cspace", "planner", "avoidance", "shared_control", "cooperation", "vision", "perception"]),
     ("cell", &["access", "cell", "query", "sim", "report"]),
     ("connect", &["status", "ros2", "recording", "view", "live"]),
-    ("front", &["elbowroom", "cli", "python"]),
+    ("front", &["elbowroom", "capi", "cli", "python"]),
 ];
 
 /// One crate of the workspace.

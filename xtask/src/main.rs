@@ -10,6 +10,7 @@
 mod artifacts;
 mod compile;
 mod dependents;
+mod dist;
 mod documents;
 mod faults;
 mod functions;
@@ -53,6 +54,9 @@ cargo xtask COMMAND
         plants each fault of xtask/faults.toml in a copy of the committed sources and runs the tests of its crate, then those
         of the crates that depend on it, until one fails; fails itself if a fault is not found. --list names the faults,
         --check only sees that every one can be planted
+  dist
+        the library for C and C++ as a release build: shared library, headers, package file of pkg-config, example and licences in
+        target/dist/elbowroom-VERSION-TARGET, and as an archive (docs/c-api.md)
   documents
         no long line, no broken link, no unknown name in documents
   inventory [DIR]
@@ -137,6 +141,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["quick"] => Ok(quick::run(&root, "HEAD")?),
         ["quick", "--since", commit] => Ok(quick::run(&root, commit)?),
         ["soak", names @ ..] => soak::run(&root, names),
+        ["dist"] => Ok(dist::run(&root)?),
         ["layers"] => Ok(layers::run(&root)?),
         ["layers", "--write"] => Ok(layers::write(&root)?),
         ["inventory"] => Ok(inventory::run(&root)?),

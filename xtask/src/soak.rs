@@ -17,7 +17,7 @@ struct Run {
 const LONG: (&str, &str) = ("ELBOWROOM_LONG", "1");
 
 /// The runs; `docs/measurements/soak.md` has their results.
-const RUNS: [Run; 15] = [
+const RUNS: [Run; 16] = [
     Run {
         name: "geometry",
         what: "random pairs of shapes and meshes, motions and sweeps beside their oracles, up to a million each",
@@ -131,6 +131,12 @@ const RUNS: [Run; 15] = [
         name: "contacts",
         what: "the collision point of every robot of the data beside Coal, 2,500 states each",
         words: &["xtask", "contacts"],
+        env: &[LONG],
+    },
+    Run {
+        name: "c-api",
+        what: "100,000 states of two arms through the C interface beside the command, also with sanitizers",
+        words: &["test", "--release", "-p", "elbowroom-cli", "--test", "main", "c_api::", "--", "--nocapture"],
         env: &[LONG],
     },
     Run {

@@ -17,8 +17,9 @@ use xtask::crates::{self, Crate, GROUPS};
 
 use crate::faults;
 
-/// Crates that may opt out of `forbid(unsafe_code)`: the Python bindings need it.
-const MAY_USE_UNSAFE: [&str; 1] = ["python"];
+/// Crates that may opt out of `forbid(unsafe_code)`: the interfaces for C and Python need it. They must deny it, so that each
+/// module that allows it is seen.
+const MAY_USE_UNSAFE: [&str; 2] = ["capi", "python"];
 
 /// Forbidden dependencies, also through other crates: (crate, dependency, reason).
 const NEVER: [(&str, &str, &str); 3] = [
@@ -109,7 +110,10 @@ fn name_problems(name: &str, manifest: &Table) -> Option<String> {
 
 fn lint_problem(name: &str, manifest: &Table) -> Option<String> {
     if MAY_USE_UNSAFE.contains(&name) {
-        return None;
+        let level = lookup(manifest, &["lints", "rust", "unsafe_code"]).and_then(Value::as_str);
+        return (level != Some("deny")).then(|| {
+            format!("{name}: [lints.rust] in Cargo.toml must say unsafe_code = \"deny\", and modules allow it")
+        });
     }
     let opted_in = lookup(manifest, &["lints", "workspace"]).and_then(Value::as_bool) == Some(true);
     (!opted_in)
@@ -239,6 +243,16 @@ mod tests {
         assert!(check([renamed])[0].contains("not `elbowroom-scene`"));
         let bare = ("scene".to_owned(), "[package]\nname = \"elbowroom-scene\"".parse().unwrap());
         assert!(check([bare])[0].contains("[lints]"));
+    }
+
+    #[test]
+    fn a_crate_that_may_use_unsafe_code_must_deny_it() {
+        let with = |lints: &str| {
+            ("capi".to_owned(), format!("[package]\nname = \"elbowroom-capi\"\n{lints}").parse().unwrap())
+        };
+        assert_eq!(check([with("[lints.rust]\nunsafe_code = \"deny\"")]), Vec::<String>::new());
+        assert!(check([with("[lints.rust]\nunsafe_code = \"allow\"")])[0].contains("must say"));
+        assert!(check([with("")])[0].contains("must say"));
     }
 
     #[test]

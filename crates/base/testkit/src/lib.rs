@@ -1,7 +1,7 @@
 //! Utilities that tests, benches and developers' tools of several crates share.
 //!
 //! It has generators of pseudo-random numbers, folders of data, the extent of tests, a counter of allocations, a hash, free addresses, a Python,
-//! certificates and arguments of benches. Shipped crates never link this crate.
+//! compilers of C and C++, certificates and arguments of benches. Shipped crates never link this crate.
 //!
 //! ```
 //! use elbowroom_testkit::random::Random;
@@ -19,6 +19,7 @@
 pub mod allocation;
 pub mod bench;
 pub mod certificate;
+pub mod compiler;
 pub mod extent;
 pub mod folder;
 pub mod hash;

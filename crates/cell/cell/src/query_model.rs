@@ -82,16 +82,25 @@ impl QueryModel {
 
     /// A single robot whose root link is the world frame. Its default state is zero, or the limits nearest to zero.
     pub fn of_robot(file: &Path, robot: Robot) -> Self {
-        let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
-        let start = lower.iter().zip(&upper).map(|(lower, upper)| 0.0_f64.min(*upper).max(*lower)).collect();
-        let only = QueryRobot { name: String::new(), robot, base_in_world: Pose::IDENTITY, start };
+        let only = (String::new(), robot, Pose::IDENTITY);
+        Self { is_single_robot: true, ..Self::of_robots(file, [only]) }
+    }
+
+    /// Robots without a cell: each has a name and the pose of its root link in the world. Default states are those of
+    /// [`of_robot`](Self::of_robot).
+    pub fn of_robots(file: &Path, robots: impl IntoIterator<Item = (String, Robot, Pose)>) -> Self {
+        let placed = |(name, robot, base_in_world): (String, Robot, Pose)| {
+            let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
+            let start = lower.iter().zip(&upper).map(|(lower, upper)| 0.0_f64.min(*upper).max(*lower)).collect();
+            QueryRobot { name, robot, base_in_world, start }
+        };
         Self {
             file: file.to_owned(),
-            robots: vec![only],
+            robots: robots.into_iter().map(placed).collect(),
             objects: Vec::new(),
             carried: Vec::new(),
             rules: PairRules::default(),
-            is_single_robot: true,
+            is_single_robot: false,
         }
     }
 

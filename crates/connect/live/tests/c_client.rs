@@ -14,6 +14,7 @@ use elbowroom_live::network::{Network, UdpNetwork};
 use elbowroom_live::{Clock, ControllerClient, ControllerState, Keys, Refused};
 use elbowroom_monitor::VolumeId;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::compiler;
 use elbowroom_testkit::random::{split_mix, unit};
 
 /// Boot number of `messages.c`.
@@ -22,23 +23,10 @@ const CONFIGURATION: u64 = 99;
 
 /// Compiles a program; `None` if there is no compiler.
 fn compile(source: &Path, name: &str) -> Option<PathBuf> {
-    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
-    let is_there = Command::new(&compiler).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
-    if !is_there.is_ok_and(|status| status.success()) {
-        eprintln!("skipped: no C compiler {compiler}");
-        return None;
-    }
+    let mut compiler = compiler::c()?;
     let program = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
-    let output = Command::new(&compiler)
-        .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2", "-I"])
-        .arg(clients())
-        .arg(source)
-        .arg("-o")
-        .arg(&program)
-        .arg("-lm")
-        .output()
-        .expect("the compiler runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    compiler.arg("-I").arg(clients());
+    compiler::compile(compiler, source, &program, &["-lm".into()]);
     Some(program)
 }
 

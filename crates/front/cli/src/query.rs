@@ -5,10 +5,10 @@ use std::path::Path;
 use elbowroom::cell::{Cell, OutOfReachProofs, PairFile, QueryModel};
 use elbowroom::formats::robot::{self, LoadOptions};
 use elbowroom::query::{
-    ContactRecord, ContactRow, Level, MotionRecord, MotionRow, Query, QueryEffort, QueryKind, QueryPairs,
+    ContactRecord, ContactRow, Level, MotionRecord, MotionRow, Query, QueryChecker, QueryEffort, QueryKind, QueryPairs,
     QueryPairsError, QueryRecord, QueryRow, QueryStates, evaluate_contacts, evaluate_motions, evaluate_query,
 };
-use elbowroom::scene::{Checker, CheckerOptions, Scene, SceneState};
+use elbowroom::scene::{CheckerOptions, Scene, SceneState};
 use elbowroom::spatial::units::LengthUnit;
 
 use crate::args::QueryArgs;
@@ -143,8 +143,7 @@ fn query_pairs(args: &QueryArgs, model: &mut QueryModel, cell: Option<&Cell>) ->
 }
 
 fn has_no_pair(scene: &Scene, start: &SceneState, pairs: &QueryPairs) -> bool {
-    let mut checker = Checker::new(scene, CheckerOptions::default());
-    pairs.sides().iter().all(|&[a, b]| checker.between(a, b).is_empty(start))
+    !QueryChecker::new(scene, CheckerOptions::default(), pairs).has_pair(start)
 }
 
 /// Loads the model, and its cell if it comes from a cell file.

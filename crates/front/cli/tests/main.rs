@@ -1,5 +1,6 @@
 //! Integration tests of `elbowroom-cli` in one program: a module per subject, whose first line says what belongs there.
 
+mod c_api;
 mod carry;
 mod check;
 mod common;

@@ -6,13 +6,9 @@ use std::sync::mpsc;
 use std::time::Instant;
 
 use elbowroom_formats::Diagnostic;
-use elbowroom_scene::{
-    Checker, CheckerOptions, CheckerStats, ContactSurfaces, Detail, Level, PairContact, PairDistance, Scene,
-    SceneError, SceneState, Selection,
-};
-use elbowroom_spatial::Vec3;
+use elbowroom_scene::{Checker, CheckerOptions, CheckerStats, ContactSurfaces, Level, Scene, SceneError, SceneState};
 
-use super::{ContactRow, QueryKind, QueryPairs, QueryRow, QueryStates};
+use super::{ContactRow, QueryChecker, QueryKind, QueryPairs, QueryRow, QueryStates};
 
 /// Number of states per checker. Its learned weights must not depend on the number of threads.
 pub const BLOCK: usize = 256;
@@ -192,7 +188,7 @@ fn contacts_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, blo
 
 /// The rows of a block. Likely pairs are tested first; the weights are updated from state to state.
 fn rows_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<QueryRow> {
-    let mut pairs = CheckedPairs { checker: Checker::new(scene, query.options), sides: query.pairs.sides() };
+    let mut checker = QueryChecker::new(scene, query.options, query.pairs);
     let mut state = query.start.clone();
     let (mut rows, mut times_s) = (Vec::with_capacity(BLOCK), Vec::new());
     for index in block * BLOCK..states.len().min((block + 1) * BLOCK) {
@@ -201,129 +197,12 @@ fn rows_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: 
         }
         let begin = Instant::now();
         match query.all_pairs_m {
-            None => rows.push(QueryRow { index, ..pairs.row(scene, &state, query.kind) }),
-            Some(margin_m) => rows.extend(pairs.rows_within(&state, margin_m).map(|row| QueryRow { index, ..row })),
+            None => rows.push(QueryRow { index, ..checker.row(&state, query.kind) }),
+            Some(margin_m) => rows.extend(checker.rows_within(&state, margin_m).map(|row| QueryRow { index, ..row })),
         }
         if query.is_timed {
             times_s.push(begin.elapsed().as_secs_f64());
         }
     }
-    Ok((rows, QueryEffort { stats: pairs.checker.stats(), times_s }))
-}
-
-/// The pairs between all sides, treated as one set.
-struct CheckedPairs<'c, 's> {
-    checker: Checker<'s>,
-    sides: &'c [[Selection; 2]],
-}
-
-impl CheckedPairs<'_, '_> {
-    fn within(&mut self, state: &SceneState, metres: f64) -> Option<PairContact> {
-        self.sides.iter().find_map(|&[a, b]| self.checker.between(a, b).within(state, metres))
-    }
-
-    fn nearest(&mut self, state: &SceneState) -> Option<PairDistance> {
-        let each = self.sides.iter().filter_map(|&[a, b]| self.checker.between(a, b).distance(state));
-        // A NaN distance counts as contact.
-        let order = |d: &PairDistance| if d.metres.is_nan() { f64::NEG_INFINITY } else { d.metres };
-        each.min_by(|a, b| order(a).total_cmp(&order(b)))
-    }
-
-    /// The row of one state; its index is 0.
-    fn row(&mut self, scene: &Scene, state: &SceneState, kind: QueryKind) -> QueryRow {
-        match kind {
-            QueryKind::Collision => {
-                let Some(contact) = self.within(state, 0.0) else { return self.nothing() };
-                QueryRow {
-                    collides: true,
-                    distance_m: Some(0.0),
-                    pair: Some((contact.a, contact.b)),
-                    witness: self.witness_of_contact(state, contact),
-                    point_in_a: None,
-                    index: 0,
-                    level: contact.level,
-                }
-            }
-            QueryKind::Point | QueryKind::Contacts | QueryKind::Time => self.collision_point(scene, state),
-            QueryKind::Distance => self.distance(state).unwrap_or_else(|| self.nothing()),
-            QueryKind::Tolerance(t) => {
-                if self.within(state, t).is_none() {
-                    return self.nothing();
-                }
-                let nothing = self.nothing();
-                let row = self.distance(state).unwrap_or(nothing);
-                QueryRow { collides: true, ..row }
-            }
-        }
-    }
-
-    /// The collision point of the first sides that have one: `a` is the link that collides.
-    fn collision_point(&mut self, scene: &Scene, state: &SceneState) -> QueryRow {
-        let mut of_sides = |&[a, b]: &[Selection; 2]| self.checker.between(a, b).collision_point(state, Detail::Exact);
-        let Some(point) = self.sides.iter().find_map(&mut of_sides) else { return self.nothing() };
-        QueryRow {
-            collides: true,
-            distance_m: Some(0.0),
-            pair: Some((point.link, point.other)),
-            witness: Some((point.on_link, point.on_other)),
-            point_in_a: state.pose(scene, point.link).map(|pose| pose.inverse_transform_point(point.on_link)),
-            ..self.nothing()
-        }
-    }
-
-    /// The row without a pair.
-    fn nothing(&self) -> QueryRow {
-        let level = self.checker.last_level();
-        QueryRow { index: 0, collides: false, distance_m: None, pair: None, witness: None, point_in_a: None, level }
-    }
-
-    /// The row of a distance query; `None` without pairs.
-    fn distance(&mut self, state: &SceneState) -> Option<QueryRow> {
-        let d = self.nearest(state)?;
-        let row = row_of(&d);
-        if row.collides || d.lower_bound > 0.0 {
-            return Some(row);
-        }
-        // Below the accuracy of the distance, the collision test decides, so that all kinds of queries agree.
-        let Some(contact) = self.within(state, 0.0) else { return Some(row) };
-        let pair = Some((contact.a, contact.b));
-        let witness = if row.pair == pair { row.witness } else { self.witness_of_contact(state, contact) };
-        Some(QueryRow { collides: true, distance_m: Some(0.0), pair, witness, ..row })
-    }
-
-    /// A row for each pair no farther apart than a distance, the nearest first.
-    fn rows_within(&mut self, state: &SceneState, margin_m: f64) -> impl Iterator<Item = QueryRow> {
-        let mut rows: Vec<QueryRow> = Vec::new();
-        for &[a, b] in self.sides {
-            let push = |d: PairDistance| {
-                // Sides may overlap.
-                if !rows.iter().any(|row| row.pair == Some((d.a, d.b))) {
-                    rows.push(row_of(&d));
-                }
-            };
-            self.checker.between(a, b).distances_within(state, margin_m, push);
-        }
-        rows.sort_by(|a, b| a.distance_m.unwrap_or(0.0).total_cmp(&b.distance_m.unwrap_or(0.0)));
-        rows.into_iter()
-    }
-
-    /// Witness points of two geometries in contact.
-    fn witness_of_contact(&mut self, state: &SceneState, contact: PairContact) -> Option<(Vec3, Vec3)> {
-        let found = self.checker.between(contact.a.into(), contact.b.into()).distance(state);
-        found.map(|d| (d.on_a, d.on_b))
-    }
-}
-
-/// The row of a distance; its index is 0.
-fn row_of(d: &PairDistance) -> QueryRow {
-    QueryRow {
-        index: 0,
-        // A NaN distance counts as contact.
-        collides: !(d.metres > 0.0),
-        distance_m: Some(d.metres.max(0.0)),
-        pair: Some((d.a, d.b)),
-        witness: Some((d.on_a, d.on_b)),
-        point_in_a: None,
-        level: d.level,
-    }
+    Ok((rows, QueryEffort { stats: checker.stats(), times_s }))
 }

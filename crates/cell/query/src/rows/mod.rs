@@ -8,6 +8,7 @@ mod evaluate;
 mod kind;
 mod motion;
 mod pairs;
+mod query_checker;
 mod row;
 mod states;
 
@@ -15,5 +16,6 @@ pub use evaluate::{BLOCK, Query, QueryEffort, evaluate, evaluate_contacts, evalu
 pub use kind::{QueryKind, UnknownQueryKind};
 pub use motion::{MotionRecord, MotionRow, evaluate_motions};
 pub use pairs::{QueryPairs, QueryPairsError};
+pub use query_checker::QueryChecker;
 pub use row::{ContactRecord, ContactRow, PairColumns, QueryRecord, QueryRow};
 pub use states::QueryStates;
