@@ -300,6 +300,10 @@ impl<'a> Parser<'a, '_> {
                 self.lexer = ahead;
                 Err(self.unexpected(Token::UnclosedText))
             }
+            None => {
+                let what = format!("the file ends before the value of {}", show(name));
+                Err(self.error(what).hint("copy or export the file again"))
+            }
             _ => Err(missing()),
         }
     }
