@@ -153,6 +153,7 @@ fn groups_of_all_kinds_give_their_children() {
         "Anchor { url \"http://example.org\" description \"a\" children FACE }",
         "Billboard { axisOfRotation 0 1 0 children [ FACE ] }",
         "Collision { collide FALSE children FACE proxy Shape { geometry Box { } } }",
+        "Collision { proxy FACE }",
         "Switch { whichChoice 1 choice [ Group { } FACE ] }",
         "LOD { center 0 0 0 range [ 1, 5 ] level [ FACE Shape { geometry Box { } } ] }",
         "Group { bboxCenter 0 0 0 bboxSize 1 1 1 children [ Group { children FACE } ] }",

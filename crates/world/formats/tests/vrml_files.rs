@@ -54,6 +54,7 @@ fn lines_points_scripts_and_routes_are_warnings() {
         ("EXTERNPROTO P [ ] [ \"p.wrl\" \"q.wrl\" ]", "a.wrl:3: the prototype P is skipped"),
         ("Wheel { teeth 12 colour [ 1 0 0 ] }", "a.wrl:3: Wheel: is no node of VRML 2; it is skipped"),
         ("Transform { translatoin 1 2 3 }", "a.wrl:3: Transform has no field translatoin"),
+        ("Transform { scale 1 0 1 }", "a.wrl:3: Transform: scale has a 0"),
         ("Transform { rotation 0 0 0 1 }", "a.wrl:3: Transform: rotation has no axis"),
         ("Shape { geometry IndexedFaceSet { } }", "a.wrl:3: IndexedFaceSet: has no polygon"),
     ] {
@@ -115,6 +116,7 @@ fn faults_are_named_with_their_line() {
         ("Shape { geometry Box { size 1 -1 1 } }".into(), "Box: has the size -1"),
         ("ROUTE a.b c.d".into(), "a ROUTE without `TO`"),
         ("PROTO P [ } ] {".into(), "the prototype of line 2 is not complete"),
+        ("PROTO Sound [ ] { Shape { } }".into(), "a.wrl:2: the prototype Sound has the name of a node"),
     ] {
         let message = refused(&body);
         assert!(message.contains(part) && message.contains("write:"), "{body}: {message}");

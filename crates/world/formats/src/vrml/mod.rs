@@ -6,7 +6,7 @@
 //! | nodes | what is read |
 //! | --- | --- |
 //! | `Transform` | translation, rotation, scale, scaleOrientation, center |
-//! | `Group`, `Anchor`, `Billboard`, `Collision` | all children; the `proxy` of a `Collision` is not read |
+//! | `Group`, `Anchor`, `Billboard`, `Collision` | all children; the `proxy` of a `Collision` if it has none |
 //! | `Switch` | the child of `whichChoice`; a warning if it shows none |
 //! | `LOD` | the first level, which is the finest |
 //! | `Inline` | a file below the folder of the file that names it; a missing one is an error |

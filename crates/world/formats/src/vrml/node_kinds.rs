@@ -136,6 +136,11 @@ pub(super) fn kind(name: &[u8]) -> NodeKind {
     }
 }
 
+/// Whether the standard has a node of this name that a prototype must not replace.
+pub(super) fn is_standard(name: &[u8]) -> bool {
+    kind(name) != NodeKind::Unknown || contains(&SURFACES, name)
+}
+
 /// Whether a node by itself may have a surface.
 pub(super) fn may_have_surface(name: &[u8], document: &Document<'_>) -> bool {
     matches!(kind(name), NodeKind::Shape | NodeKind::Inline)

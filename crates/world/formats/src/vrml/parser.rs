@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::document::{Document, Field, Node, Value};
 use super::lexer::{Lexer, Token};
-use super::node_kinds::may_have_surface;
+use super::node_kinds::{is_standard, may_have_surface};
 use crate::Diagnostic;
 use crate::tokens::show;
 use crate::warning_list::WarningList;
@@ -150,6 +150,10 @@ impl<'a> Parser<'a, '_> {
     fn prototype(&mut self) -> Result<()> {
         let line = self.lexer.line();
         let name = self.word("the name of the prototype")?;
+        if is_standard(name) {
+            let what = format!("the prototype {} has the name of a node of VRML 2", show(name));
+            return Err(self.error(what).hint("another name"));
+        }
         self.document.prototypes.insert(name, line);
         self.warnings.push_with(|| {
             let what =

@@ -193,7 +193,8 @@ impl Walk<'_, '_> {
                 let levels = list(["level", "children"]);
                 Ok(&levels[..levels.len().min(1)])
             }
-            _ => Ok(node.nodes("children")),
+            // A collision without children has an invisible surface.
+            _ => Ok(list(["children", "proxy"])),
         }
     }
 
@@ -245,6 +246,9 @@ impl Walk<'_, '_> {
         let translation = fields.tuple("translation", [0.0; 3])?;
         let center = fields.tuple("center", [0.0; 3])?;
         let scale = fields.tuple("scale", [1.0; 3])?;
+        if scale.contains(&0.0) {
+            self.warn(fields.error("scale has a 0: the surfaces in it are flat").hint("factors above 0"));
+        }
         let rotation = self.rotation(fields, "rotation")?;
         let orientation = self.rotation(fields, "scaleOrientation")?;
         let mut total = Affine::translation(translation).after(&Affine::translation(center));
