@@ -70,7 +70,7 @@ cargo xtask COMMAND
   fuzz [SECONDS]
         throws mutated files at every parser, SECONDS each (default 60)
   fuzz parser PARSER SECONDS [DIR [SEED]]
-        the same for one of stl obj dae gltf ply off 3ds urdf srdf scene yaml mesh, with the files of DIR too
+        the same for one of stl obj dae gltf ply off 3ds wrl urdf srdf scene yaml mesh, with the files of DIR too
   fuzz cell-file FILE SECONDS [SEED]
         the same for a cell file, which is also run for a few ticks
   fuzz cells [--count N] [--kind stop|exchange|faults|moving|tools|recordings|all] [--seed S] [--case I] [--no-shrink] [--json]
@@ -119,7 +119,8 @@ Exit status: 0 all well, 1 a check failed, 2 the call is wrong.
 ";
 
 /// Parsers that `fuzz` tests, besides the cell file's.
-const PARSERS: [&str; 11] = ["urdf", "srdf", "scene", "yaml", "stl", "obj", "dae", "gltf", "ply", "off", "mesh"];
+const PARSERS: [&str; 13] =
+    ["urdf", "srdf", "scene", "yaml", "stl", "obj", "dae", "gltf", "ply", "off", "3ds", "wrl", "mesh"];
 
 /// Commands of `elbowroom-devtools` that measure or run long: they use a release build.
 const MEASURING: [&str; 7] = ["cross-validate", "contacts", "evade", "golden", "paths", "rpq", "scaling"];

@@ -42,7 +42,7 @@ const RUNS: [Run; 16] = [
     },
     Run {
         name: "chains",
-        what: "100,000 random chains through every form of Denavit-Hartenberg parameters",
+        what: "100,000 random chains through every form of Denavit-Hartenberg parameters, every robot as VRML",
         words: &["test", "--release", "-p", "elbowroom-kinematics", "-p", "elbowroom-formats"],
         env: &[LONG],
     },

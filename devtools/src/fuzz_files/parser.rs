@@ -1,6 +1,6 @@
 //! Mutation fuzzing of one reader: `cargo xtask fuzz parser PARSER SECONDS [DIR [SEED]]`.
 //!
-//! PARSER is one of stl obj dae gltf ply off 3ds urdf srdf scene yaml mesh. Damages the built-in samples and the files of DIR (those
+//! PARSER is one of stl obj dae gltf ply off 3ds wrl urdf srdf scene yaml mesh. Damages the built-in samples and the files of DIR (those
 //! of the parser's kind below 64 KiB), and counts panics, readings slower than 2 s, and results too large for the
 //! input. Limit the memory from outside (`ulimit -v`). An error if anything was found; the input is kept in the temporary
 //! directory.

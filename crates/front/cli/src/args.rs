@@ -179,7 +179,7 @@ pub(crate) struct QueryArgs {
     /// The cell file; or --urdf
     #[arg(required_unless_present = "urdf", conflicts_with = "urdf")]
     pub(crate) cell: Option<PathBuf>,
-    /// A single robot with its root link at the world origin: a URDF, or a 3DS, GLB or glTF model
+    /// A single robot with its root link at the world origin: a URDF, or a 3DS, GLB, glTF or VRML model
     #[arg(long, value_name = "FILE", visible_alias = "model")]
     pub(crate) urdf: Option<PathBuf>,
     #[command(flatten)]
@@ -252,7 +252,7 @@ pub(crate) struct EffortArgs {
 
 Exit status: 0 if the files were written.")]
 pub(crate) struct ConvertArgs {
-    /// The robot: a URDF, a 3DS, GLB or glTF model, or a cell file that has it; or a planning scene (docs/models.md); or an
+    /// The robot: a URDF, a 3DS, GLB, glTF or VRML model, or a cell file that has it; or a planning scene (docs/models.md); or an
     /// MCAP recording of ROS 2 (in builds with the feature `live`)
     pub(crate) model: PathBuf,
     /// The output, a new file: .srdf for a robot, .toml for a planning scene, .csv for a recording

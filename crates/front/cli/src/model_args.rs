@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use elbowroom::spatial::units::LengthUnit;
 
-/// The joints of a 3DS, GLB or glTF model.
+/// The joints of a 3DS, GLB, glTF or VRML model.
 #[derive(Debug, Args)]
 pub(crate) struct JointArgs {
-    /// The file with the joints of a 3DS, GLB or glTF model (docs/models.md); default: MODEL.joints.toml beside it
+    /// The file with the joints of a 3DS, GLB, glTF or VRML model (docs/models.md); default: MODEL.joints.toml beside it
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) joints: Option<PathBuf>,
     /// One joint, in metres and degrees, such as `link_2: axis=y, min=-150, max=20, speed=110`; may be repeated

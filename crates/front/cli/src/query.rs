@@ -169,7 +169,7 @@ fn query_model(args: &QueryArgs) -> Result<(QueryModel, Option<Cell>), Failure> 
         return Err(Failure::Wrong(what.to_owned()));
     }
     let is_model = |e: &str| path.extension().is_some_and(|x| x.eq_ignore_ascii_case(e));
-    if ["urdf", "3ds", "glb", "gltf"].into_iter().any(is_model) {
+    if ["urdf", "3ds", "glb", "gltf", "wrl", "wrz"].into_iter().any(is_model) {
         let path = path.display();
         return Err(Failure::Wrong(format!("{path}: is a robot, not a cell file\n  write: --urdf {path}")));
     }

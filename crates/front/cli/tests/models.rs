@@ -1,4 +1,4 @@
-//! Robots from 3DS models at the command line: convert, inspect, query.
+//! Robots from 3DS and VRML models at the command line: convert, inspect, query.
 
 use crate::common;
 use crate::common::{elbowroom, model, with_cell};
@@ -119,4 +119,68 @@ fn the_robot_of_a_cell_is_converted_and_errors_are_reported() {
         ));
     let error = elbowroom(two.path(), &["convert", "cell.toml", "--out", "out"]).expect(2).stderr;
     assert!(error.contains("which robot") && error.contains("arm, other"), "{error}");
+}
+
+/// A post with an arm that turns about y, as VRML and as the same URDF.
+const VRML_ARM: &str = "#VRML V2.0 utf8
+DEF post Transform { children [
+  Shape { geometry Box { size 0.2 0.4 0.2 } }
+  DEF arm Transform { translation 0 0.3 0 children Transform { translation 0.4 0 0 scale 0.001 0.001 0.001 children
+    Shape { geometry Box { size 800 100 100 } } } }
+  DEF wall Transform { translation 0 0.3 0.8 children Shape { geometry Box { size 0.1 0.1 0.1 } } }
+] }
+";
+const URDF_ARM: &str = r#"<robot name="arm">
+<link name="post"><collision><geometry><box size="0.2 0.4 0.2"/></geometry></collision></link>
+<link name="arm"><collision><origin xyz="0.4 0 0"/><geometry><mesh filename="bar.wrl" scale="1 1 1"/></geometry></collision></link>
+<link name="wall"><collision><geometry><mesh filename="cube.wrz"/></geometry></collision></link>
+<joint name="arm" type="revolute"><parent link="post"/><child link="arm"/><origin xyz="0 0.3 0"/><axis xyz="0 1 0"/>
+<limit lower="-3" upper="3" velocity="1" effort="1"/></joint>
+<joint name="wall" type="fixed"><parent link="post"/><child link="wall"/><origin xyz="0 0.3 0.8"/></joint></robot>"#;
+
+#[test]
+fn vrml_is_read_wherever_a_robot_or_a_mesh_is() {
+    let dir = tempfile::tempdir().unwrap();
+    let here = dir.path();
+    let write = |name: &str, text: &str| std::fs::write(here.join(name), text).unwrap();
+    let cuboid = |size: &str| format!("#VRML V2.0 utf8\nShape {{ geometry Box {{ size {size} }} }}\n");
+    write("arm.wrl", VRML_ARM);
+    write(
+        "arm.joints.toml",
+        "units = { length = \"m\", angle = \"rad\" }\n[joint.arm]\naxis = \"y\"\nmin = -3\nmax = 3\nspeed = 1\n",
+    );
+    write("arm.urdf", URDF_ARM);
+    write("bar.wrl", &cuboid("0.8 0.1 0.1"));
+    write("cube.wrz", &cuboid("0.1 0.1 0.1"));
+    write("q.csv", "arm\n0\n-0.7\n-1.4\n1.2\n");
+    let json = |call: &[&str]| elbowroom(here, call).expect(0).json();
+    let inspected = json(&["inspect", "arm.wrl", "--json"]);
+    assert_eq!((&inspected["dof"], inspected["links"].as_array().map(Vec::len)), (&1.into(), Some(4)), "{inspected}");
+    let distances = |model: &str| -> Vec<f64> {
+        let rows = json(&["query", "--urdf", model, "--ask", "distance", "--states", "q.csv", "--json"]);
+        rows["rows"].as_array().unwrap().iter().map(|r| r["distance_m"].as_f64().unwrap()).collect()
+    };
+    let (vrml, urdf) = (distances("arm.wrl"), distances("arm.urdf"));
+    assert!(vrml.len() == 4 && vrml.iter().zip(&urdf).all(|(a, b)| (a - b).abs() < 1e-7), "{vrml:?} {urdf:?}");
+    let error = elbowroom(here, &["query", "arm.wrl", "--ask", "collision"]).expect(2).stderr;
+    assert!(error.contains("--urdf arm.wrl"), "{error}");
+    elbowroom(here, &["convert", "arm.wrl", "--out", "out"]).expect(0);
+    assert_eq!(json(&["inspect", "out/arm.urdf", "--brief", "--json"])["dof"], 1);
+    let cell = |object: &str| {
+        format!(
+            "version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\n[robot.arm]\nmodel = \"arm.wrl\"\n\
+             [object.cube]\nmesh = \"{object}\"\nat = [0, 0.3, -0.6]\n"
+        )
+    };
+    write("cell.toml", &cell("cube.wrz"));
+    write("at.csv", "arm.arm\n0\n1.5707963\n");
+    let rows = json(&["query", "cell.toml", "--ask", "collision", "--states", "at.csv", "--json"]);
+    let hits: Vec<bool> = rows["rows"].as_array().unwrap().iter().map(|r| r["collides"].as_bool().unwrap()).collect();
+    assert_eq!(hits, [false, true], "{rows}");
+    write("old.wrl", "#VRML V1.0 ascii\nSeparator { }\n");
+    write("cell.toml", &cell("old.wrl"));
+    for call in [&["query", "cell.toml", "--ask", "collision"][..], &["inspect", "old.wrl"]] {
+        let error = elbowroom(here, call).expect(2).stderr;
+        assert!(error.contains("old.wrl:1: is VRML 1.0") && error.contains("VRML 2 (VRML97)"), "{error}");
+    }
 }

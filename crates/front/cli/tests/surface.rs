@@ -113,6 +113,8 @@ fn invalid_files_are_refused_by_name() {
         "noise.glb",
         "noise.gltf",
         "noise.3ds",
+        "noise.wrl",
+        "noise.wrz",
         "noise.ply",
         "noise.off",
     ];
@@ -156,7 +158,7 @@ fn invalid_files_are_refused_by_name() {
 #[test]
 fn known_broken_files_end_with_a_report_or_an_error() {
     let Some(malformed) = folder::data_part("malformed") else { return };
-    let endings = ["urdf", "xml", "stl", "obj", "dae", "gltf", "glb", "3ds", "ply", "off"];
+    let endings = ["urdf", "xml", "stl", "obj", "dae", "gltf", "glb", "3ds", "wrl", "ply", "off"];
     let mut seen = 0;
     for path in folder::files_below(&malformed) {
         if path.extension().is_some_and(|e| endings.iter().any(|known| e.eq_ignore_ascii_case(known))) {

@@ -10,7 +10,7 @@
 //! | [`robot`] | a robot as data: chain, colliders, disabled pairs |
 //! | [`scene`] | robots and objects together: collision and distance queries, allowed collision matrix |
 //! | [`Diagnostic`] | an error or a warning of a file: what is wrong, where, and what to write instead |
-//! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF, 3DS |
+//! | [`formats`] | URDF, SRDF, STL, OBJ, COLLADA, glTF, PLY, OFF, 3DS, VRML |
 //! | [`monitor`] | interference regions, checked in every control tick |
 //! | [`interlock`] | exchange regions between controllers on a network: arbiter, guards, messages |
 //! | [`cspace`] | obstacles as occupied cells of joint space |

@@ -3,7 +3,7 @@
 //! | file | module | notes |
 //! | --- | --- | --- |
 //! | URDF, SRDF | [`robot`], [`urdf`], [`srdf`] | line numbers in every message; `package://` searched beside the file and upward; written too |
-//! | 3DS, glTF as robots | [`robot`], [`nodetree`], [`joints`] | joints from tracks or from a file |
+//! | 3DS, glTF, VRML as robots | [`robot`], [`nodetree`], [`joints`] | joints from tracks or from a file |
 //! | STL | [`stl`] | binary and ASCII; written as binary |
 //! | OBJ | [`obj`] | polygons, objects, groups |
 //! | COLLADA | [`dae`] | units, up axis, nested and instanced nodes |
@@ -12,6 +12,7 @@
 //! | OFF | [`off`] | ASCII |
 //! | PCD | [`pcd`] | points; ASCII, binary, compressed |
 //! | 3DS | [`tds`] | objects, hierarchy, pivots, tracks; written too |
+//! | VRML 2 | [`vrml`] | transforms, `USE`, `Inline`, solids; text or gzip |
 //! | joint states, trajectories | [`joint_states`] | CSV; columns in any order, errors with file and line |
 //! | tables of numbers | [`number_table`] | CSV with a header |
 //! | planning scenes | [`planning_scene`] | of `MoveIt`: `.scene` text and YAML |
@@ -89,6 +90,7 @@ pub mod tds;
 mod tokens;
 pub mod toml_tables;
 pub mod urdf;
+pub mod vrml;
 mod warning_list;
 mod whole_file;
 mod xml;

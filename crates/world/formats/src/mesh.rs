@@ -7,7 +7,7 @@ use elbowroom_spatial::units::LengthUnit;
 
 pub use crate::mesh_data::{LoadedMeshes, MeshData, UpAxis};
 use crate::nodetree::NodeTree;
-use crate::{Diagnostic, dae, gltf, input, obj, off, ply, stl, tds, urdf};
+use crate::{Diagnostic, dae, gltf, input, obj, off, ply, stl, tds, urdf, vrml};
 
 /// A mesh file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,16 +26,18 @@ pub enum MeshFormat {
     Off,
     /// 3D Studio.
     Tds,
+    /// VRML 2, as text or compressed with gzip.
+    Vrml,
 }
 
 impl MeshFormat {
     /// Whether the format defines the unit of its numbers, so that the option `--unit` has no effect.
     pub fn states_its_unit(self) -> bool {
-        matches!(self, Self::Dae | Self::Gltf)
+        matches!(self, Self::Dae | Self::Gltf | Self::Vrml)
     }
 }
 
-/// Loads a mesh file: STL, OBJ, DAE, glTF/GLB, PLY, OFF or 3DS. The content decides the format, then the extension.
+/// Loads a mesh file: STL, OBJ, DAE, glTF/GLB, PLY, OFF, 3DS or VRML 2. The content decides the format, then the extension.
 ///
 /// `unit` is the unit for formats that define none (STL, OBJ, PLY, OFF, 3DS); `None` means metres. A COLLADA file is
 /// rotated so that its up axis is +z. The result has one entry per object.
@@ -73,7 +75,7 @@ pub fn load_with(path: &Path, unit: Option<LengthUnit>, up: UpAxis) -> Result<Lo
 
 /// Parses the content of a mesh file.
 ///
-/// `file` is named in messages, and the buffers of a glTF are relative to it. Its extension decides the format if the
+/// `file` is named in messages, and other files of a glTF or VRML model are relative to it. Its extension decides the format if the
 /// content does not.
 ///
 /// # Errors
@@ -88,6 +90,7 @@ pub fn parse(bytes: &[u8], file: &Path, unit: Option<LengthUnit>, up: UpAxis) ->
         MeshFormat::Ply => ply::parse(bytes, file),
         MeshFormat::Off => off::parse(bytes, file),
         MeshFormat::Tds => tds::parse(bytes, file).map(NodeTree::flatten),
+        MeshFormat::Vrml => vrml::parse(bytes, file),
     }?;
     apply_unit(&mut loaded, format, file, unit);
     loaded.meshes.retain(|m| !m.triangles.is_empty());
@@ -150,6 +153,10 @@ pub fn unit_warning(extent: Vec3) -> Option<Diagnostic> {
 /// # Errors
 /// [`Diagnostic`] for a file of another format. The message names the format, if it is known.
 pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, Diagnostic> {
+    // Before the check of the content, which refuses other files that are compressed.
+    if vrml::is_header(bytes) {
+        return Ok(MeshFormat::Vrml);
+    }
     input::check_content(bytes, file)?;
     let decoded = input::text_bytes(&bytes[..bytes.len().min(4096) & !1], file).unwrap_or_default();
     let head = decoded.trim_ascii_start();
@@ -175,7 +182,7 @@ pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, Diagnostic> {
     })
 }
 
-const READABLE: &str = "a mesh as STL, OBJ, DAE, glTF/GLB, PLY, OFF or 3DS";
+const READABLE: &str = "a mesh as STL, OBJ, DAE, glTF/GLB, PLY, OFF, 3DS or VRML 2";
 
 fn by_magic(bytes: &[u8], head: &[u8]) -> Option<MeshFormat> {
     if bytes.starts_with(b"glTF") || (head.starts_with(b"{") && contains(head, b"\"")) {
@@ -195,7 +202,7 @@ fn by_magic(bytes: &[u8], head: &[u8]) -> Option<MeshFormat> {
 
 fn unsupported_format(head: &[u8]) -> Option<(&'static str, &'static str)> {
     [
-        (&b"#VRML"[..], "VRML", READABLE),
+        (&b"#X3D"[..], "X3D", READABLE),
         (b"#Inventor", "an Open Inventor file", READABLE),
         (b"# .PCD", "a point cloud, not a mesh", "a mesh of the surface: collision checking needs triangles"),
         (b"VERSION .7", "a point cloud, not a mesh", "a mesh of the surface: collision checking needs triangles"),
@@ -224,6 +231,8 @@ fn by_extension(file: &Path) -> Option<MeshFormat> {
         ("ply", MeshFormat::Ply),
         ("off", MeshFormat::Off),
         ("3ds", MeshFormat::Tds),
+        ("wrl", MeshFormat::Vrml),
+        ("wrz", MeshFormat::Vrml),
     ]
     .into_iter()
     .find(|(extension, _)| extension_is(file, extension))

@@ -1,4 +1,4 @@
-//! A model as a tree of frames with meshes and animations: the common representation of 3DS and glTF.
+//! A model as a tree of frames with meshes and animations: the common representation of 3DS, glTF and VRML.
 
 use std::path::Path;
 
@@ -56,6 +56,25 @@ impl Node {
     /// Creates a node without meshes and without animation.
     pub fn new(name: impl Into<String>, parent: Option<usize>, in_parent: Pose) -> Self {
         Self { name: name.into(), parent, in_parent, ..Self::default() }
+    }
+
+    /// Creates a node without animation from its place in the scene, and returns its rigid frame in the scene too.
+    ///
+    /// Scale, shear and mirror of `to_scene` are applied to the mesh. `parent_in_scene` is the rigid frame of the parent.
+    pub(crate) fn placed(
+        name: String,
+        parent: Option<usize>,
+        parent_in_scene: &Pose,
+        to_scene: &Affine,
+        mesh: Option<MeshData>,
+    ) -> (Self, Pose) {
+        let frame = rigid(to_scene);
+        let mut node = Self::new(name, parent, parent_in_scene.inverse_mul(&frame));
+        if let Some(mut mesh) = mesh {
+            Affine::from(&frame.inverse()).after(to_scene).apply(&mut mesh);
+            node.meshes.push(mesh);
+        }
+        (node, frame)
     }
 }
 

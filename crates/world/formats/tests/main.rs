@@ -17,3 +17,6 @@ mod problem;
 #[path = "../benches/any_point/surface.rs"]
 mod surface;
 mod tds;
+mod vrml;
+mod vrml_files;
+mod vrml_robots;

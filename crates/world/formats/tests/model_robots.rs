@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use crate::common::solids::{corners, corners_apart, random_q, solids};
 use elbowroom_formats::nodetree::{Keyframe, Node, NodeTree};
 use elbowroom_formats::robot::{self, LoadOptions};
 use elbowroom_formats::{LoadedRobot, MeshData, joints, tds};
 use elbowroom_kinematics::{Chain, ChainState, JointKind, LinkId};
 use elbowroom_proximity::Shape;
-use elbowroom_robot::{Collider, Robot};
+use elbowroom_robot::Robot;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::folder;
 use elbowroom_testkit::random::Xorshift;
@@ -286,13 +287,6 @@ fn animations_of_gltf_are_joints() {
     assert!(animated(|j| j.replace("\"rotation\"", "\"roll\""), &keys).is_ok());
 }
 
-fn random_q(random: &mut Xorshift, chain: &Chain) -> Vec<f64> {
-    let bounds = chain.lower().into_iter().zip(chain.upper());
-    bounds
-        .map(|(lo, hi)| (0.5 + 0.5 * random.between(-1.0, 1.0)) * (hi.min(7.0) - lo.max(-7.0)) + lo.max(-7.0))
-        .collect()
-}
-
 /// Largest difference of a link's pose at random joint values, with joints matched by name.
 fn apart(a: &Chain, b: &Chain, links: &[&str]) -> f64 {
     let mut random = Xorshift(0x1234_5678_9abc_def1);
@@ -315,35 +309,6 @@ fn apart(a: &Chain, b: &Chain, links: &[&str]) -> f64 {
         }
     }
     worst
-}
-
-fn corners(colliders: &[Collider]) -> Vec<[Vec3; 3]> {
-    let of = |b: &Collider| match &b.shape {
-        Shape::Mesh(m) => {
-            let corner = |i: u32| b.in_link.transform_point(m.vertices()[i as usize]);
-            m.triangles().iter().map(|t| t.map(corner)).collect::<Vec<_>>()
-        }
-        _ => Vec::new(),
-    };
-    colliders.iter().flat_map(of).collect()
-}
-
-/// Largest distance between corners of triangles in the same order.
-fn corners_apart(a: &[[Vec3; 3]], b: &[[Vec3; 3]]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let pairs = a.iter().flatten().zip(b.iter().flatten());
-    pairs.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max)
-}
-
-/// Colliders of a link and of the links fixed to it at the same pose.
-fn solids(robot: &Robot, link: &str) -> Vec<[Vec3; 3]> {
-    let chain = &robot.chain;
-    let mut all = corners(&robot.colliders[chain.link(link).unwrap().0]);
-    for joint in chain.joints().iter().filter(|j| j.kind == JointKind::Fixed && chain.links()[j.parent.0] == link) {
-        let below = solids(robot, &chain.links()[joint.child.0]);
-        all.extend(below.into_iter().map(|t| t.map(|v| joint.origin.transform_point(v))));
-    }
-    all
 }
 
 #[test]

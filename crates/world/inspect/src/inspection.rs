@@ -28,9 +28,9 @@ pub struct InspectOptions {
     pub srdf: Option<PathBuf>,
     /// Unit for formats that state none.
     pub unit: Option<LengthUnit>,
-    /// Joints file of a 3DS or glTF model. Default: the file beside the model.
+    /// Joints file of a 3DS, glTF or VRML model. Default: the file beside the model.
     pub joints: Option<PathBuf>,
-    /// Further joints of a 3DS or glTF model, in the syntax of the command line.
+    /// Further joints of a 3DS, glTF or VRML model, in the syntax of the command line.
     pub joint: Vec<String>,
     /// Last link of the DH table. Default: the leaf with the most independent joints.
     pub tip: Option<String>,
@@ -101,7 +101,7 @@ enum Source {
 }
 
 impl Inspection {
-    /// Inspects a URDF, a 3DS or glTF model, or a mesh file.
+    /// Inspects a URDF, a 3DS, glTF or VRML model, or a mesh file.
     ///
     /// Files with the extension `urdf`, `xacro` or `xml` count as robots; for other files the content decides.
     ///
@@ -145,7 +145,7 @@ impl Inspection {
     fn of_mesh(path: &Path, options: &InspectOptions) -> Result<Self, Diagnostic> {
         if options.tip.is_some() || options.srdf.is_some() {
             return Err(Diagnostic::new(path, None, "is a mesh: it has no links for --tip or --srdf")
-                .hint("a URDF or a 3DS or glTF model, or leave these options out"));
+                .hint("a URDF or a 3DS, glTF or VRML model, or leave these options out"));
         }
         let loaded = mesh::load(path, options.unit)?;
         let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -290,7 +290,7 @@ pub fn srdf(file: &Path, robot: &Robot, given: Srdf) -> Result<String, Diagnosti
     Ok(pairs::srdf(robot.chain.name(), &pairs::of_robot(file, robot)?, given))
 }
 
-/// True for all files except a URDF, and a 3DS or glTF file that is a robot.
+/// True for all files except a URDF, and a 3DS, glTF or VRML file that is a robot.
 ///
 /// A URDF has the root `robot` in its first 4096 bytes, or its extension.
 fn is_mesh(path: &Path) -> bool {

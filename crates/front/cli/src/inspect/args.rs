@@ -20,7 +20,7 @@ use crate::model_args::{JointArgs, Unit};
   elbowroom inspect table.stl --unit mm --json")]
 #[allow(clippy::struct_excessive_bools)] // each is a command-line flag
 pub(crate) struct InspectArgs {
-    /// A robot (URDF, 3DS, GLB, glTF) or a mesh (STL, OBJ, DAE, PLY, OFF); with --pairs also a cell file
+    /// A robot (URDF, 3DS, GLB, glTF, VRML) or a mesh (STL, OBJ, DAE, PLY, OFF); with --pairs also a cell file
     pub(crate) model: PathBuf,
     /// The SRDF of the URDF
     #[arg(long, value_name = "FILE")]

@@ -3,7 +3,7 @@
 use elbowroom_spatial::Pose;
 
 use super::animation::node_animations;
-use super::scene::SceneReader;
+use super::scene::{SceneNode, SceneReader};
 use crate::Diagnostic;
 use crate::affine::Affine;
 use crate::nodetree::{Keyframe, Node, NodeTree, rigid};
@@ -16,19 +16,17 @@ pub(super) fn build(scene: &mut SceneReader<'_>, tree: &mut NodeTree) -> Result<
         scene.warnings.push(Diagnostic::new(scene.reader.file, None, what));
     }
     let nodes = std::mem::take(&mut scene.nodes);
-    let frames: Vec<Pose> = nodes.iter().map(|n| rigid(&n.to_scene)).collect();
+    let mut frames: Vec<Pose> = Vec::with_capacity(nodes.len());
     let full: Vec<Affine> = nodes.iter().map(|n| n.to_scene).collect();
-    for (i, scene_node) in nodes.into_iter().enumerate() {
+    for scene_node in nodes {
         let parent_in_scene = scene_node.parent.map_or(Pose::IDENTITY, |p| frames[p]);
-        let mut node = Node::new(scene_node.name, scene_node.parent, parent_in_scene.inverse_mul(&frames[i]));
-        if let Some(mut mesh) = scene_node.mesh {
-            Affine::from(&frames[i].inverse()).after(&scene_node.to_scene).apply(&mut mesh);
-            node.meshes.push(mesh);
-        }
-        if let Some(animation) = animations.get(&scene_node.index) {
-            let parent = scene_node.parent.map_or(Affine::IDENTITY, |p| full[p]);
+        let SceneNode { index, parent, name, to_scene, mesh } = scene_node;
+        let (mut node, frame) = Node::placed(name, parent, &parent_in_scene, &to_scene, mesh);
+        frames.push(frame);
+        if let Some(animation) = animations.get(&index) {
+            let parent = parent.map_or(Affine::IDENTITY, |p| full[p]);
             let in_parent = |to_parent: Affine| parent_in_scene.inverse_mul(&rigid(&parent.after(&to_parent)));
-            let keys = animation.keys(&document.nodes[scene_node.index]);
+            let keys = animation.keys(&document.nodes[index]);
             node.track = keys.map(|(time_s, map)| Keyframe { time_s, in_parent: in_parent(map) }).collect();
         }
         tree.push(node);

@@ -1,4 +1,4 @@
-//! The joints of a 3DS or glTF model: a small TOML file beside the model, or options of the command line.
+//! The joints of a 3DS, glTF or VRML model: a small TOML file beside the model, or options of the command line.
 //!
 //! ```toml
 //! # arm.joints.toml, read with arm.3ds

@@ -1,4 +1,4 @@
-//! Robots from files: a URDF with its meshes, or a 3DS or glTF model; with an SRDF.
+//! Robots from files: a URDF with its meshes, or a 3DS, glTF or VRML model; with an SRDF.
 
 mod from_tree;
 mod joint_candidates;
@@ -24,7 +24,7 @@ use crate::nodetree::NodeTree;
 use crate::srdf::Srdf;
 use crate::urdf::{Geometry, LinkGeometry, UrdfModel};
 use crate::warning_list::WarningList;
-use crate::{Diagnostic, gltf, input, srdf, tds, urdf};
+use crate::{Diagnostic, gltf, input, srdf, tds, urdf, vrml};
 use mesh_cache::MeshCache;
 
 pub use from_tree::MAX_LINKS;
@@ -42,9 +42,9 @@ pub struct LoadOptions {
     ///
     /// Default: metres. The numbers of a URDF itself are always metres.
     pub unit: Option<LengthUnit>,
-    /// Joints file of a 3DS or glTF model. Default: [`joints::default_path`], if that file exists.
+    /// Joints file of a 3DS, glTF or VRML model. Default: [`joints::default_path`], if that file exists.
     pub joints: Option<PathBuf>,
-    /// Further joints of a 3DS or glTF model, in the syntax of [`joints::parse_option`]. They override the file.
+    /// Further joints of a 3DS, glTF or VRML model, in the syntax of [`joints::parse_option`]. They override the file.
     pub joint: Vec<String>,
 }
 
@@ -59,7 +59,7 @@ pub struct LoadedRobot {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Loads a robot: a URDF with its collision meshes, or a 3DS or glTF model.
+/// Loads a robot: a URDF with its collision meshes, or a 3DS, glTF or VRML model.
 ///
 /// The content decides the format, then the extension. The options say whether to load the visual meshes of a URDF, and
 /// an SRDF.
@@ -67,7 +67,7 @@ pub struct LoadedRobot {
 /// Each object of a mesh file becomes one collider. A mesh file is read once, however many links use it. The unit of a
 /// COLLADA mesh is applied; its up axis is ignored, as in rviz and `MoveIt`.
 ///
-/// Every node of a 3DS or glTF model becomes a link. Joints are inferred from tracks that rotate or translate a node, or
+/// Every node of a 3DS, glTF or VRML model becomes a link. Joints are inferred from tracks that rotate or translate a node, or
 /// specified by [`LoadOptions::joints`] or [`LoadOptions::joint`]; all other nodes are fixed. A model without joints
 /// gives a warning with a template of a joints file.
 ///
@@ -111,26 +111,30 @@ pub fn apply_srdf(robot: &mut Robot, path: &Path) -> Result<Vec<Diagnostic>, Dia
     Ok(warnings.finish(path))
 }
 
-/// The format of a file that [`load`] reads as a 3DS or glTF model; `None` for other files.
+/// The format of a file that [`load`] reads as a 3DS, glTF or VRML model; `None` for other files.
 pub fn tree_format(bytes: &[u8], file: &Path) -> Option<MeshFormat> {
     let head = bytes[..bytes.len().min(64)].trim_ascii_start();
     if head.starts_with(b"<") {
         return None;
     }
-    mesh::detect(bytes, file).ok().filter(|f| matches!(f, MeshFormat::Tds | MeshFormat::Gltf))
+    mesh::detect(bytes, file).ok().filter(|f| matches!(f, MeshFormat::Tds | MeshFormat::Gltf | MeshFormat::Vrml))
 }
 
-/// Parses the nodes of a 3DS or glTF model, in metres.
+/// Parses the nodes of a 3DS, glTF or VRML model, in metres.
 ///
 /// # Errors
-/// The errors of [`tds::parse`] and [`gltf::parse_tree`].
+/// The errors of [`tds::parse`], [`gltf::parse_tree`] and [`vrml::parse_tree`].
 pub fn parse_tree(
     bytes: &[u8],
     format: MeshFormat,
     file: &Path,
     unit: Option<LengthUnit>,
 ) -> Result<NodeTree, Diagnostic> {
-    let mut tree = if format == MeshFormat::Tds { tds::parse(bytes, file)? } else { gltf::parse_tree(bytes, file)? };
+    let mut tree = match format {
+        MeshFormat::Tds => tds::parse(bytes, file)?,
+        MeshFormat::Vrml => vrml::parse_tree(bytes, file)?,
+        _ => gltf::parse_tree(bytes, file)?,
+    };
     let Some(unit) = unit else { return Ok(tree) };
     if format.states_its_unit() {
         let what = format!("states its own unit; the unit {} asked for is not applied", unit.symbol());
@@ -170,7 +174,7 @@ fn load_tree(
 fn load_urdf(bytes: &[u8], urdf_path: &Path, options: &LoadOptions) -> Result<(Robot, WarningList), Diagnostic> {
     if options.joints.is_some() || !options.joint.is_empty() {
         return Err(Diagnostic::new(urdf_path, None, "is a URDF, which has its own joints")
-            .hint("leave the joints out, or name a 3DS or glTF model"));
+            .hint("leave the joints out, or name a 3DS, glTF or VRML model"));
     }
     let model = urdf::parse(bytes, urdf_path)?;
     let mut robot = Robot::new(chain(&model, urdf_path)?);

@@ -8,13 +8,13 @@ use std::path::Path;
 use elbowroom_formats::mesh::{self, UpAxis};
 use elbowroom_formats::nodetree::{Node, NodeTree};
 use elbowroom_formats::planning_scene::{self, PlanningScene};
-use elbowroom_formats::{Diagnostic, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, tds, urdf};
+use elbowroom_formats::{Diagnostic, LoadedMeshes, dae, gltf, obj, off, ply, robot, srdf, stl, tds, urdf, vrml};
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
 pub use elbowroom_testkit::random::Xorshift;
 /// All readers; `mesh` detects the format.
-pub const PARSERS: [&str; 12] =
-    ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "urdf", "srdf", "scene", "yaml", "mesh"];
+pub const PARSERS: [&str; 13] =
+    ["stl", "obj", "dae", "gltf", "ply", "off", "3ds", "wrl", "urdf", "srdf", "scene", "yaml", "mesh"];
 
 /// Runs a reader and returns the approximate size of its result, bytes.
 pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, Diagnostic> {
@@ -38,6 +38,11 @@ pub fn run(parser: &str, bytes: &[u8]) -> Result<usize, Diagnostic> {
         "ply" => ply::parse(bytes, &file).map(size),
         "off" => off::parse(bytes, &file).map(size),
         "3ds" => tds::parse(bytes, &file).map(|t| tree_size(&t)),
+        "wrl" => {
+            let tree = vrml::parse_tree(bytes, &file).map(|t| tree_size(&t));
+            let meshes = vrml::parse(bytes, &file).map(size);
+            tree.and_then(|tree| Ok(tree.max(meshes?)))
+        }
         "urdf" => urdf::parse(bytes, &file).and_then(|m| robot::chain(&m, &file)).map(|c| c.links().len() * 200),
         "srdf" => srdf::parse(bytes, &file).map(|s| s.disabled.len() * 100),
         "scene" | "yaml" => planning_scene::parse(&file, bytes).map(|s| scene_size(&s)),
@@ -90,11 +95,12 @@ pub fn samples(parser: &str) -> Vec<Vec<u8>> {
         }
         "off" => of(&[OFF]),
         "3ds" => vec![tds::write(&waving::waving(), Path::new("a.3ds")).unwrap()],
+        "wrl" => of(&[VRML]),
         "urdf" => of(&[URDF]),
         "srdf" => of(&[SRDF]),
         "scene" => of(&[SCENE, OLD_SCENE]),
         "yaml" => of(&[SCENE_YAML]),
-        _ => PARSERS[..7].iter().flat_map(|p| samples(p)).collect(),
+        _ => PARSERS[..8].iter().flat_map(|p| samples(p)).collect(),
     }
 }
 
@@ -152,6 +158,24 @@ const GLTF: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0
 {"bufferView":0,"componentType":5126,"count":2,"byteOffset":8,"type":"SCALAR"}],
 "animations":[{"channels":[{"sampler":0,"target":{"node":1,"path":"translation"}}],
 "samplers":[{"input":3,"output":0,"interpolation":"LINEAR"}]}]}"#;
+const VRML: &str = r#"#VRML V2.0 utf8
+PROTO Lamp [ exposedField SFColor color 1 1 1 eventIn SFBool on ] { Material { diffuseColor IS color } }
+EXTERNPROTO Far [ field SFNode a ] [ "urn:a" "far.wrl" ]
+WorldInfo { title "a \"b\" {" info [ "x", "y" ] }
+DEF base Transform { translation 1 2,3 rotation 0 0 1 1.5 scale 1 -1 0.5 scaleOrientation 1 0 0 0.25 center 0 0.5 0
+ children [ DEF face Shape { appearance Appearance { material Lamp { color 1 0 0 } }
+ geometry DEF f IndexedFaceSet { coord DEF c Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] } solid FALSE ccw FALSE
+ coordIndex [ 0, 1, 2, 3, -1, 0 1 2 ] } } # comment
+ DEF arm Transform { children Shape { geometry IndexedFaceSet { coord USE c coordIndex [ 2 1 0 -1 ] } } } ] }
+Switch { whichChoice 1 choice [ Group { } DEF part Group { children USE face } ] }
+LOD { range [ 5 ] level [ Shape { geometry ElevationGrid { xDimension 2 zDimension 2 xSpacing 0.5 height [ 0 1 2 3 ] } } ] }
+Collision { collide TRUE proxy NULL children Billboard { children Anchor { url "a.html" children [
+ Shape { geometry Box { size 0.1 0.2 0.3 } } Shape { geometry Cylinder { radius 0.001 top FALSE } }
+ Shape { geometry Cone { bottomRadius 0.001 } } Shape { geometry Sphere { radius 0.001 } } ] } } }
+Script { url "javascript: function f() { }" directOutput TRUE eventIn SFTime t field SFNode n USE arm }
+DEF clock TimeSensor { cycleInterval 2 } ROUTE clock.fraction_changed TO base . set_translation
+Shape { geometry PointSet { coord USE c } }
+"#;
 const URDF: &str = r#"<?xml version="1.0"?><robot name="r" xmlns:drake="http://drake.mit.edu">
 <link name="a"><collision name="c"><origin xyz="0 0 1" rpy="0 1.5 0"/><geometry><box size="1 2 3"/></geometry></collision>
 <visual><geometry><mesh filename="package://p/a.stl" scale="1 1 -1"/></geometry></visual></link>

@@ -31,10 +31,10 @@ pub(in crate::file) const SOLIDS: &[Variant] = &[
 
 #[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const ROBOT: &[Key] = &[
-    key("model", "path", "`model` or `dh` required", "a URDF, or a 3DS, GLB or glTF model: [models](models.md)"),
+    key("model", "path", "`model` or `dh` required", "a URDF, or a 3DS, GLB, glTF or VRML model: [models](models.md)"),
     key("srdf", "path", "none", "a file whose disabled pairs are never tested for collision; with `dh` the links are `link_1`, `link_2`, …"),
     key("ignore", "pairs of links", "none", "pairs never tested for collision: `[[\"link_4\", \"link_6\"]]`, for links that always touch"),
-    key("joints", "path", "`MODEL.joints.toml` beside it, if it exists", "which nodes of a 3DS or glTF model move"),
+    key("joints", "path", "`MODEL.joints.toml` beside it, if it exists", "which nodes of a 3DS, glTF or VRML model move"),
     key("unit", "`\"m\"` `\"cm\"` `\"mm\"` `\"in\"`", "metres", "unit of a 3DS model, and of a URDF's meshes that state none"),
     key("dh", "list of rows", "`model` or `dh` required", "classical Denavit-Hartenberg table, see below"),
     key("links", "list", "none", "solids of the `dh` rows: one entry (or a list) per row, in the frame after the row; `[]` for none"),
