@@ -7,7 +7,9 @@ use std::path::Path;
 use crate::common::elbowroom;
 use crate::perceived_run::clearance;
 use elbowroom::formats::robot::{LoadOptions, load};
+use elbowroom::kinematics::ChainState;
 use elbowroom::robot::Robot;
+use elbowroom::spatial::Vec3;
 use elbowroom::vision::Point2;
 
 /// Where the crate really is, by the table that nothing but this test reads.
@@ -60,6 +62,40 @@ fn the_arm_plans_again_around_a_crate_that_no_file_names() {
     let (camera, map) = (cell.find("[camera.above]").unwrap(), cell.find("[map.kr125]").unwrap());
     std::fs::write(dir.path().join("mine/crate/blind.toml"), format!("{}{}", &cell[..camera], &cell[map..])).unwrap();
     assert!(run(dir.path(), "blind.toml", &robot).1 <= 0.0);
+}
+
+/// Largest angle of the tool's axis from its direction at the start of a run, degrees.
+fn largest_tilt_deg(dir: &Path, robot: &Robot) -> f64 {
+    let trace = std::fs::read_to_string(dir.join("out/trace.csv")).unwrap();
+    let mut state = ChainState::new(&robot.chain);
+    let mut axis = |row: &str| {
+        let q: Vec<f64> = row.split(',').skip(2).take(6).map(|cell| cell.parse().unwrap()).collect();
+        state.q.copy_from_slice(&q);
+        robot.chain.forward(&mut state);
+        state.link_in_root(robot.chain.tip()).rotation.z_axis()
+    };
+    let axes: Vec<Vec3> = trace.lines().skip(1).map(&mut axis).collect();
+    axes.iter().map(|a| a.dot(axes[0]).clamp(-1.0, 1.0).acos().to_degrees()).fold(0.0, f64::max)
+}
+
+#[test]
+fn new_paths_keep_the_axis_that_the_move_keeps() {
+    let dir = tempfile::tempdir().unwrap();
+    elbowroom(dir.path(), &["example", "mine"]).expect(0);
+    let robot = load(&dir.path().join("mine/models/kr125/kr125.urdf"), &LoadOptions::default()).unwrap().robot;
+    let cell = std::fs::read_to_string(dir.path().join("mine/crate/cell.toml")).unwrap();
+    for (name, keep) in [("free.toml", ""), ("kept.toml", ", keep = { axis = \"z\", within = 10 }")] {
+        let text = cell.replace(", planner = \"grid\"", keep);
+        std::fs::write(dir.path().join("mine/crate").join(name), text).unwrap();
+    }
+    let replans = |answer: &serde_json::Value| answer["robots"][0]["perception"]["replans_in_motion"].as_u64();
+    let (answer, least_m) = run(dir.path(), "kept.toml", &robot);
+    let tilt_deg = largest_tilt_deg(dir.path(), &robot);
+    println!("largest tilt {tilt_deg:.2}°");
+    assert!(replans(&answer) > Some(0) && least_m > 0.02, "{}: {least_m}", answer["robots"][0]["perception"]);
+    assert!(tilt_deg <= 10.0 + 1e-6, "{tilt_deg}");
+    let (answer, _) = run(dir.path(), "free.toml", &robot);
+    assert!(replans(&answer) > Some(0) && largest_tilt_deg(dir.path(), &robot) > 10.0);
 }
 
 #[test]
