@@ -133,7 +133,7 @@ DEF post Transform { children [
 const URDF_ARM: &str = r#"<robot name="arm">
 <link name="post"><collision><geometry><box size="0.2 0.4 0.2"/></geometry></collision></link>
 <link name="arm"><collision><origin xyz="0.4 0 0"/><geometry><mesh filename="bar.wrl" scale="1 1 1"/></geometry></collision></link>
-<link name="wall"><collision><geometry><mesh filename="cube.wrz"/></geometry></collision></link>
+<link name="wall"><collision><geometry><mesh filename="cube.wrl"/></geometry></collision></link>
 <joint name="arm" type="revolute"><parent link="post"/><child link="arm"/><origin xyz="0 0.3 0"/><axis xyz="0 1 0"/>
 <limit lower="-3" upper="3" velocity="1" effort="1"/></joint>
 <joint name="wall" type="fixed"><parent link="post"/><child link="wall"/><origin xyz="0 0.3 0.8"/></joint></robot>"#;
@@ -151,7 +151,7 @@ fn vrml_is_read_wherever_a_robot_or_a_mesh_is() {
     );
     write("arm.urdf", URDF_ARM);
     write("bar.wrl", &cuboid("0.8 0.1 0.1"));
-    write("cube.wrz", &cuboid("0.1 0.1 0.1"));
+    write("cube.wrl", &cuboid("0.1 0.1 0.1"));
     write("q.csv", "arm\n0\n-0.7\n-1.4\n1.2\n");
     let json = |call: &[&str]| elbowroom(here, call).expect(0).json();
     let inspected = json(&["inspect", "arm.wrl", "--json"]);
@@ -169,14 +169,15 @@ fn vrml_is_read_wherever_a_robot_or_a_mesh_is() {
     let cell = |object: &str| {
         format!(
             "version = 1\nunits = {{ length = \"m\", angle = \"rad\" }}\n[robot.arm]\nmodel = \"arm.wrl\"\n\
-             [object.cube]\nmesh = \"{object}\"\nat = [0, 0.3, -0.6]\n"
+             [object.cube]\nshape = \"mesh\"\nmesh = \"{object}\"\nat = [0, 0.3, -0.6]\n"
         )
     };
-    write("cell.toml", &cell("cube.wrz"));
+    write("cell.toml", &cell("cube.wrl"));
     write("at.csv", "arm.arm\n0\n1.5707963\n");
-    let rows = json(&["query", "cell.toml", "--ask", "collision", "--states", "at.csv", "--json"]);
-    let hits: Vec<bool> = rows["rows"].as_array().unwrap().iter().map(|r| r["collides"].as_bool().unwrap()).collect();
-    assert_eq!(hits, [false, true], "{rows}");
+    let call = ["query", "cell.toml", "--ask", "collision", "--states", "at.csv", "--json"];
+    let found = elbowroom(here, &call).expect(1).json();
+    let hits: Vec<u64> = found["rows"].as_array().unwrap().iter().filter_map(|r| r["collides"].as_u64()).collect();
+    assert_eq!(hits, [0, 1], "{found}");
     write("old.wrl", "#VRML V1.0 ascii\nSeparator { }\n");
     write("cell.toml", &cell("old.wrl"));
     for call in [&["query", "cell.toml", "--ask", "collision"][..], &["inspect", "old.wrl"]] {

@@ -12,7 +12,7 @@
 //! | OFF | [`off`] | ASCII |
 //! | PCD | [`pcd`] | points; ASCII, binary, compressed |
 //! | 3DS | [`tds`] | objects, hierarchy, pivots, tracks; written too |
-//! | VRML 2 | [`vrml`] | transforms, `USE`, `Inline`, solids; text or gzip |
+//! | VRML 2 | [`vrml`] | transforms, `USE`, `Inline`, solids |
 //! | joint states, trajectories | [`joint_states`] | CSV; columns in any order, errors with file and line |
 //! | tables of numbers | [`number_table`] | CSV with a header |
 //! | planning scenes | [`planning_scene`] | of `MoveIt`: `.scene` text and YAML |

@@ -26,7 +26,7 @@ pub enum MeshFormat {
     Off,
     /// 3D Studio.
     Tds,
-    /// VRML 2, as text or compressed with gzip.
+    /// VRML 2.
     Vrml,
 }
 
@@ -153,10 +153,6 @@ pub fn unit_warning(extent: Vec3) -> Option<Diagnostic> {
 /// # Errors
 /// [`Diagnostic`] for a file of another format. The message names the format, if it is known.
 pub fn detect(bytes: &[u8], file: &Path) -> Result<MeshFormat, Diagnostic> {
-    // Before the check of the content, which refuses other files that are compressed.
-    if vrml::is_header(bytes) {
-        return Ok(MeshFormat::Vrml);
-    }
     input::check_content(bytes, file)?;
     let decoded = input::text_bytes(&bytes[..bytes.len().min(4096) & !1], file).unwrap_or_default();
     let head = decoded.trim_ascii_start();
@@ -193,6 +189,9 @@ fn by_magic(bytes: &[u8], head: &[u8]) -> Option<MeshFormat> {
     }
     if off::is_header(head) {
         return Some(MeshFormat::Off);
+    }
+    if vrml::is_header(head) {
+        return Some(MeshFormat::Vrml);
     }
     if tds::is_header(bytes) {
         return Some(MeshFormat::Tds);

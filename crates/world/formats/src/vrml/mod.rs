@@ -1,4 +1,4 @@
-//! VRML 2 (VRML97, ISO/IEC 14772-1), as text or compressed with gzip: the triangles of the scene, or the tree of its nodes.
+//! VRML 2 (VRML97, ISO/IEC 14772-1): the triangles of the scene, or the tree of its nodes.
 //!
 //! Numbers are metres, and the frame of the file is kept: VRML defines +y as up, and nothing is rotated. Every `Transform`
 //! and `Inline` is a node of the tree, and so is a `Group` with a name; a node has the name after its `DEF`.
