@@ -179,7 +179,8 @@ fn point_inside(outer: &PlacedTree, inner: &PlacedTree) -> Option<Vec3> {
     let inner_in_outer = outer.in_world.inverse_mul(&inner.in_world);
     outer.tree.shapes().iter().find_map(|o| {
         let Shape::Mesh(mesh) = &o.shape else { return None };
-        let inside = |p: &Vec3| mesh.contains(o.in_geometry.inverse_transform_point(inner_in_outer.transform_point(*p)));
+        let inside =
+            |p: &Vec3| mesh.contains(o.in_geometry.inverse_transform_point(inner_in_outer.transform_point(*p)));
         let found = inner.tree.shapes().iter().find_map(|i| points_of_parts(i).find(inside))?;
         Some(inner.in_world.transform_point(found))
     })

@@ -126,8 +126,7 @@ fn halves(obb: &Obb, items: &[TreeItem], shapes: &[LocalShape]) -> Option<[Vec<T
     }
     let mut axes = [Vec3::X, Vec3::Y, Vec3::Z];
     axes.sort_by(|a, b| obb.half_extents.dot(*b).total_cmp(&obb.half_extents.dot(*a)));
-    let centres: Vec<Vec3> =
-        items.iter().map(|item| obb.pose.inverse_transform_point(centre(*item, shapes))).collect();
+    let centres: Vec<Vec3> = items.iter().map(|item| obb.pose.inverse_transform_point(centre(*item, shapes))).collect();
     axes.into_iter().find_map(|axis| {
         let mean = centres.iter().map(|c| c.dot(axis) / centres.len() as f64).sum::<f64>();
         let (low, high): (Vec<_>, Vec<_>) = items.iter().zip(&centres).partition(|(_, c)| c.dot(axis) < mean);
