@@ -48,7 +48,7 @@ pub(crate) fn bound(boxes: &[Obb], solids: &[(Shape, Pose)]) -> f64 {
     let mut reached = boxes.iter().flat_map(Obb::corners).map(distance).fold(0.0, f64::max);
     let mut measured = 8 * boxes.len();
     let mut parts = BinaryHeap::new();
-    let mut measure = |obb: usize, centre: Vec3, half_extents: Vec3, parts: &mut BinaryHeap<Part>| {
+    let measure = |obb: usize, centre: Vec3, half_extents: Vec3, parts: &mut BinaryHeap<Part>| {
         let at_centre = distance(boxes[obb].pose.transform_point(centre));
         parts.push(Part { bound: at_centre + half_extents.length(), centre, half_extents, obb });
         at_centre
