@@ -17,7 +17,7 @@ fn robots() -> Vec<PathBuf> {
 }
 
 /// Fifty states spread over the limits, as CSV.
-fn states(model: &QueryModel) -> QueryStates {
+pub fn states(model: &QueryModel) -> QueryStates {
     let chain = &model.robots[0].robot.chain;
     let names: Vec<&str> = chain.active_joints().iter().map(|j| chain.joints()[j.0].name.as_str()).collect();
     let mut text = names.join(",") + "\n";

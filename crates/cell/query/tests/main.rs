@@ -1,5 +1,6 @@
 //! Integration tests of `elbowroom-query` in one program: a module per subject, whose first line says what belongs there.
 
+mod box_depths;
 mod common;
 mod cover_cache;
 mod inspected_robots;

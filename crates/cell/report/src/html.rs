@@ -13,14 +13,14 @@ use crate::scene::ReportScene;
 use crate::scene_data::PageData;
 use crate::summary::duration;
 use crate::tables::{self, escape};
-use crate::{plots, scene_data, shared_assets};
+use crate::{page_template, plots, scene_data, shared_assets};
 
 const PLOTLY: &str = include_str!("../assets/plotly/plotly-basic.min.js");
-const STYLE: &str = include_str!("../assets/report/report.css");
 const PAGE: &str = include_str!("../assets/report/page.html");
 /// Scripts in order: each uses earlier ones.
-const SCRIPTS: [&str; 12] = [
+const SCRIPTS: [&str; 13] = [
     shared_assets::DOM,
+    shared_assets::INFLATE,
     shared_assets::PACKING,
     include_str!("../assets/report/data.js"),
     shared_assets::KINEMATICS,
@@ -112,14 +112,12 @@ pub fn write_html(out: impl Write, scene: &ReportScene, runs: &[(&str, &Recordin
 }
 
 /// Fills in the page template.
-pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::Result<()> {
+pub(super) fn write_page(out: impl Write, content: &PageContent<'_>) -> io::Result<()> {
     let plot_data = Value::from(content.figures.iter().map(figure_data).collect::<Vec<_>>());
-    for piece in PAGE.split("{{") {
-        let (key, rest) = piece.split_once("}}").unwrap_or(("", piece));
-        match key {
-            "" => {}
+    page_template::fill(out, PAGE, |part, out| {
+        match part {
             "title" => out.write_all(escape(content.title).as_bytes())?,
-            "style" => out.write_all(STYLE.as_bytes())?,
+            "style" => out.write_all(shared_assets::STYLE.as_bytes())?,
             "result" => out.write_all(content.result.as_bytes())?,
             "regions" => out.write_all(content.regions.as_bytes())?,
             "facts" => out.write_all(content.facts.as_bytes())?,
@@ -132,11 +130,10 @@ pub(super) fn write_page(mut out: impl Write, content: &PageContent<'_>) -> io::
             "plotly" => out.write_all(deflated(PLOTLY.as_bytes())?.as_bytes())?,
             "three" => out.write_all(deflated(shared_assets::THREE.as_bytes())?.as_bytes())?,
             "scripts" => SCRIPTS.iter().try_for_each(|s| out.write_all(s.as_bytes()))?,
-            unknown => return Err(io::Error::other(format!("the page has no part called {unknown}"))),
+            _ => return Ok(false),
         }
-        out.write_all(rest.as_bytes())?;
-    }
-    out.flush()
+        Ok(true)
+    })
 }
 
 /// A sentence per robot and per region that was entered, for each run.

@@ -4,8 +4,9 @@ use elbowroom_cell::{Cell, CellRegion};
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_monitor::{Guards, Part, Presence, Volume};
 use elbowroom_proximity::{Shape, tessellate::tessellate};
-use elbowroom_robot::RobotId;
+use elbowroom_robot::{Robot, RobotId};
 use elbowroom_sim::{Recording, RegionTrack};
+use elbowroom_spatial::Pose;
 use serde_json::{Value, json};
 
 use crate::packing::{ArrayPacker, pose_values};
@@ -58,6 +59,16 @@ pub fn cell_data(cell: &Cell) -> PageData {
     });
     json["meshes"] = meshes.entries().into();
     PageData { json, arrays: packer.bytes().to_vec() }
+}
+
+/// Geometry of a robot alone, its root in the world's origin, for a page that computes no distances.
+pub(crate) fn robot_data(model: &Robot, packer: &mut ArrayPacker) -> Value {
+    let root = model.chain.root();
+    let scene = ReportScene::new().robot("robot", model, Pose::IDENTITY, root, Pose::IDENTITY, &[]);
+    let mut meshes = PageMeshes::default();
+    let mut pack = Pack { packer, meshes: &mut meshes, measured: false };
+    let robots = scene.robots.iter().map(|r| robot(r, &mut pack)).collect::<Vec<_>>();
+    json!({ "robots": robots, "objects": [], "regions": [], "shields": [], "meshes": meshes.entries() })
 }
 
 struct Pack<'a> {

@@ -3,14 +3,9 @@
 //! Its distances are the engine's, its controls work, it fits a narrow screen, and no error reaches the console.
 //!
 //! Needs Chromium, named by `ELBOWROOM_CHROMIUM`; without it the tests pass with a message.
-#![allow(clippy::print_stdout, reason = "a skipped test says so")]
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::path::Path;
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
 use elbowroom_cell::{Cell, configure};
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Guards, RegionId, RegionSweep};
@@ -20,11 +15,12 @@ use elbowroom_sim::{Recording, RunOptions, simulate};
 use elbowroom_testkit::random::{split_mix, unit};
 use serde_json::{Value, json};
 
+use crate::chromium::{chromium, folder, seen};
+
 /// Tolerance between the page and the engine, m.
 const AGREED_M: f64 = 1e-7;
 /// Tolerance of a shown number, m: it has three decimals of a millimetre.
 const SHOWN_M: f64 = 0.51e-6;
-const TIMEOUT: Duration = Duration::from_secs(100);
 /// Configurations to which the sliders are set.
 const CONFIGURATIONS: usize = 40;
 
@@ -105,15 +101,6 @@ facet normal 0 0 0 outer loop vertex 0.6 0 0 vertex 0 0.5 0 vertex 0.1 0.1 0.7 e
 endsolid wedge
 ";
 
-/// Before all other scripts: records errors.
-const WATCH: &str = "<script>
-window.problems = [];
-addEventListener('error', (event) => problems.push(event.message));
-addEventListener('unhandledrejection', (event) => problems.push(String(event.reason)));
-const log = console.error;
-console.error = (...words) => { problems.push(words.join(' ')); log(...words); };
-</script>";
-
 /// After all other scripts: acts as a user, and writes what it saw into the document.
 const PERSON: &str = "<script>
 (async () => {
@@ -165,21 +152,6 @@ const PERSON: &str = "<script>
 })();
 </script>";
 
-fn chromium() -> Option<PathBuf> {
-    let named = std::env::var_os("ELBOWROOM_CHROMIUM").map(PathBuf::from);
-    if named.is_none() {
-        println!("skipped: no browser; name a Chromium in ELBOWROOM_CHROMIUM (cargo xtask test --only tests)");
-    }
-    named
-}
-
-/// A separate folder for each test.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("browser-{name}"));
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
 fn cell(folder: &Path) -> Cell {
     let models = elbowroom_testkit::folder::examples().join("models");
     std::fs::write(folder.join("wedge.stl"), WEDGE).unwrap();
@@ -212,50 +184,7 @@ fn visit(chromium: &Path, folder: &Path, visit: &Visit<'_>) -> Value {
     let page = String::from_utf8(page).unwrap();
     assert!(page.len() < 3_000_000, "{} bytes", page.len());
     let person = PERSON.replace("CONFIGURATIONS", &json!(q).to_string());
-    let page = page.replacen("<head>", &format!("<head>{WATCH}"), 1).replace("</body>", &format!("{person}</body>"));
-    let file = folder.join("report.html");
-    std::fs::write(&file, if width < 500 { framed(&page, width) } else { page }).unwrap();
-    let out = folder.join("dom.html");
-    let size = format!("--window-size={width},900");
-    let profile = format!("--user-data-dir={}", folder.join("profile").display());
-    let mut browser = Command::new(chromium)
-        .args([
-            "--headless",
-            "--no-sandbox",
-            "--enable-unsafe-swiftshader",
-            "--virtual-time-budget=20000",
-            "--dump-dom",
-        ])
-        .args([&size, &profile])
-        .arg(format!("file://{}", file.display()))
-        .stdout(std::fs::File::create(&out).unwrap())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap_or_else(|e| panic!("{}: {e}", chromium.display()));
-    let begin = Instant::now();
-    while browser.try_wait().unwrap().is_none() {
-        if begin.elapsed() > TIMEOUT {
-            let _ = browser.kill();
-            panic!("{} did not end in {} s", chromium.display(), TIMEOUT.as_secs());
-        }
-        std::thread::sleep(Duration::from_millis(50));
-    }
-    let dom = std::fs::read_to_string(&out).unwrap();
-    let from = dom.find("<pre id=\"seen\">").expect("the page was played to the end") + "<pre id=\"seen\">".len();
-    let text = &dom[from..from + dom[from..].find('<').unwrap()];
-    let seen: Value = serde_json::from_slice(&STANDARD.decode(text).unwrap()).unwrap();
-    assert_eq!(seen["problems"], json!([]), "errors on the page");
-    seen
-}
-
-/// A page with the report in a frame of this width, as on a phone.
-fn framed(page: &str, width: u32) -> String {
-    let page = STANDARD.encode(page);
-    format!(
-        "<!DOCTYPE html><body><iframe style=\"width:{width}px;height:844px;border:0\"></iframe><script>\
-         document.querySelector('iframe').srcdoc = \
-         new TextDecoder().decode(Uint8Array.from(atob('{page}'), (c) => c.charCodeAt(0)));</script></body>"
-    )
+    seen(chromium, folder, &page.replace("</body>", &format!("{person}</body>")), width)
 }
 
 /// The engine's distances of the arm in this configuration: regions by the monitor's own query, objects by the guarded volumes.

@@ -1,6 +1,8 @@
 //! Integration tests of `elbowroom-report` in one program: a module per subject, whose first line says what belongs there.
 
 mod browser;
+mod chromium;
+mod levels_page;
 mod moving_objects;
 mod page_data;
 mod report;

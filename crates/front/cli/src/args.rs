@@ -168,6 +168,7 @@ pub(crate) struct CheckArgs {
   elbowroom query cell.toml --ask distance --states q.csv           a row per state, as CSV
   elbowroom query --urdf arm.urdf --srdf arm.srdf --ask tolerance=0.02 --states q.csv --json
   elbowroom query cell.toml --ask collision --level L2              with a bounding volume per link
+  elbowroom query cell.toml --ask distance --level L2:3             with at most eight boxes per link
   elbowroom query cell.toml --ask distance --between arm,conveyor   nothing but these two
   elbowroom query cell.toml --ask distance --all-pairs 0.1          every pair nearer than 0.1 m
   elbowroom query cell.toml --ask time --states path.csv            the first contact of the motion between the rows
@@ -223,7 +224,8 @@ pub(crate) struct QueryArgs {
 /// How a query finds its answers.
 #[derive(Debug, Args)]
 pub(crate) struct EffortArgs {
-    /// Resolution level: auto, L1, L2, L3, capsule or hull. All except auto and L3 are conservative
+    /// Resolution level: auto, L1, L2, L2:1 to L2:8 (depths of each link's box tree), L3, capsule or hull. All except auto
+    /// and L3 are conservative
     #[arg(long, default_value = "auto")]
     pub(crate) level: Level,
     /// With --level auto: the coarsest level that may answer, L1, L2 or L3; answers stay the same

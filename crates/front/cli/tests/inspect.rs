@@ -400,3 +400,41 @@ fn hairline_seams_are_closed_said_and_simplified() {
     let text = elbowroom(dir.path(), &["inspect", "ball.urdf"]).expect(0).stdout;
     assert!(text.contains("vertices on seams within 2.0e-6 m of another count as one"), "{text}");
 }
+
+#[test]
+fn the_levels_are_a_page_with_the_boxes_of_queries() {
+    let dir = tempfile::tempdir().unwrap();
+    let inspect = |args: &[&str]| {
+        let model = ns16();
+        let mut all = vec!["inspect", &model, "--brief"];
+        all.extend(args);
+        elbowroom(dir.path(), &all)
+    };
+    inspect(&["--picture", "levels.html", "--levels"]).expect(0);
+    let page = std::fs::read_to_string(dir.path().join("levels.html")).unwrap();
+    assert!(page.contains("<title>") && !page.contains("http://") && !page.contains("src="));
+    let table = &page[page.find("<tbody").unwrap()..page.find("</tbody>").unwrap()];
+    let rows: Vec<Vec<f64>> = table
+        .split("<tr>")
+        .skip(1)
+        .map(|row| {
+            let cells = row.split("class=\"number\">").skip(1);
+            cells.map(|cell| cell[..cell.find('<').unwrap()].trim_end_matches(" mm").parse().unwrap_or(0.0)).collect()
+        })
+        .collect();
+    assert_eq!(rows.len(), 11, "L1, L2, L2:1 to L2:8, L3: {table}");
+    // The arm has seven links with meshes.
+    assert_eq!((rows[0][0], rows[1][0], rows[2][0], rows[3][0]), (1.0, 7.0, 14.0, 28.0));
+    assert!(rows[0][1] > rows[1][1] && rows[1][1] > 2.0 * rows[5][1] && rows[5][1] > rows[9][1], "{rows:?}");
+    let png = inspect(&["--picture", "levels.png", "--levels"]).expect(2);
+    assert!(png.stderr.contains("write: --picture levels.html --levels"), "{}", png.stderr);
+    assert!(inspect(&["--levels"]).expect(2).stderr.contains("--picture"));
+    std::fs::write(dir.path().join("t.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let mesh = elbowroom(dir.path(), &["inspect", "t.obj", "--unit", "m", "--picture", "l.html", "--levels"]).expect(2);
+    assert!(mesh.stderr.contains("is a mesh") && mesh.stderr.contains("write: a robot"), "{}", mesh.stderr);
+    let bare = "<robot name='bare'><link name='base'/></robot>";
+    std::fs::write(dir.path().join("bare.urdf"), bare).unwrap();
+    let bare = elbowroom(dir.path(), &["inspect", "bare.urdf", "--picture", "l.html", "--levels"]).expect(2);
+    assert!(bare.stderr.contains("no link with a bounded shape"), "{}", bare.stderr);
+    assert!(!dir.path().join("l.html").exists());
+}

@@ -283,3 +283,29 @@ fn a_collision_point_is_told_in_the_frame_of_its_link() {
     }
     assert!(json["rows"][1].get("point_in_a_m").is_none());
 }
+
+#[test]
+fn a_level_has_depths_of_boxes_and_a_wrong_one_says_what_to_write() {
+    let states = Some("joint_1,joint_2\n0,0\n1.5,0\n");
+    let rows = |level: &str| query(CELL, states, &["--ask", "distance", "--level", level]).expect(0).stdout;
+    assert_eq!(rows("L2:0"), rows("L2"));
+    let deep = rows("L2:3");
+    assert_eq!(cells(deep.lines().nth(1).unwrap())[11], "L2:3", "{deep}");
+    // One capsule has one box: only the name of the level differs.
+    assert_eq!(deep.replace("L2:3", "L2"), rows("L2"));
+    let json = query(CELL, states, &["--ask", "collision", "--level", "l2:2", "--json"]).expect(1).json();
+    assert_eq!((json["level"].as_str(), json["rows"][0]["level"].as_str()), (Some("L2:2"), Some("L2:2")));
+    for (wrong, hint) in [
+        ("L4", "write auto, L1, L2, L2:1 to L2:8, L3, capsule or hull"),
+        ("L2:-1", "a whole number from 0 to 8; write L2:3"),
+        ("L2:99999999999", "a whole number from 0 to 8; write L2:3"),
+        ("L3:2", "only L2 has depths; write L3, or L2:1 to L2:8"),
+    ] {
+        let refused = query(CELL, states, &["--ask", "distance", "--level", wrong]).expect(2);
+        assert!(refused.stderr.contains(hint) && refused.stdout.is_empty(), "{wrong}: {}", refused.stderr);
+    }
+    let start = query(CELL, states, &["--ask", "distance", "--start", "L2:1"]).expect(2);
+    assert!(start.stderr.contains("write: --start L1, L2 or L3"), "{}", start.stderr);
+    let point = query(CELL, states, &["--ask", "point", "--level", "L2:1"]).expect(2);
+    assert!(point.stderr.contains("write: --level auto"), "{}", point.stderr);
+}

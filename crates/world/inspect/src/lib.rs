@@ -20,6 +20,7 @@
 //! **Invariant.** Whatever looks wrong in a model (units, open meshes, links that touch), an inspection only reports it:
 //! it never repairs the model and never changes the file.
 
+mod box_levels;
 mod deviation;
 mod dh;
 mod dh_tables;
@@ -28,6 +29,7 @@ mod enclosing_volume;
 mod inspection;
 mod pairs;
 mod pose_solutions;
+mod protrusion;
 mod quadric;
 mod resolution_levels;
 mod rows;
@@ -37,6 +39,7 @@ mod table;
 mod text;
 mod units;
 
+pub use box_levels::{BoxLevel, box_levels};
 pub use dh::{ClassicalDh, DhConvention, DhRow, DhRow4, DirectDh, DirectRow, ModifiedDh};
 pub use dh_tables::DhTables;
 pub use enclosing_volume::EnclosingVolume;

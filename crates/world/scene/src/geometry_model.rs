@@ -2,13 +2,15 @@
 
 use std::sync::OnceLock;
 
-use elbowroom_proximity::{Capsule, Cuboid, Shape};
+use elbowroom_proximity::{Capsule, Shape};
 use elbowroom_robot::GeometryId;
 use elbowroom_spatial::{Obb, Vec3};
 
 use crate::Level;
 use crate::bounding_volume;
+use crate::enclosing_cuboid::{cuboid, points};
 use crate::local_shape::LocalShape;
+use crate::obb_tree::ObbTree;
 
 /// The constant models of a link or object that has shapes.
 #[derive(Debug, Clone)]
@@ -19,6 +21,8 @@ pub(crate) struct GeometryModel {
     hull: OnceLock<Vec<LocalShape>>,
     pub capsule: Vec<LocalShape>,
     pub cuboid: Vec<LocalShape>,
+    /// Smaller boxes below `cuboid`, built at first use: most queries need none.
+    tree: OnceLock<ObbTree>,
     /// `cuboid` as an oriented box; `None` if the geometry is unbounded.
     pub obb: Option<Obb>,
     /// True if a coarse model is much cheaper to test than the exact one.
@@ -50,6 +54,7 @@ impl GeometryModel {
             slim: volume(&rounded) < volume(&boxed),
             obb: boxed.as_ref().and_then(obb),
             hull: OnceLock::new(),
+            tree: OnceLock::new(),
             capsule: rounded.map_or_else(|| exact.clone(), |s| vec![s]),
             cuboid: boxed.map_or_else(|| exact.clone(), |s| vec![s]),
             exact,
@@ -64,13 +69,27 @@ impl GeometryModel {
         if level == Level::Hull { self.hull_slack_m } else { 0.0 }
     }
 
-    /// The shapes of a level. L1 has no model of a single link or object, and gets the shapes of L2.
+    /// The shapes of a level. L1 has no model of a single link or object, and gets the shapes of L2; so do the depths of
+    /// the box tree, whose boxes are in [`GeometryModel::tree`].
     pub fn at(&self, level: Level) -> &[LocalShape] {
         match level {
-            Level::L1 | Level::L2 => &self.cuboid,
+            Level::L1 | Level::L2 | Level::L2Depth(_) => &self.cuboid,
             Level::Capsule => &self.capsule,
             Level::Hull => self.hull.get_or_init(|| self.exact.iter().map(hull).collect()),
             Level::L3 | Level::Auto => &self.exact,
+        }
+    }
+
+    /// The boxes of [`Level::L2`] and of the depths below it.
+    pub fn tree(&self) -> &ObbTree {
+        self.tree.get_or_init(|| ObbTree::new(self.exact.clone(), &self.cuboid))
+    }
+
+    /// Builds the models of a level, if they are built at first use.
+    pub fn prepare(&self, level: Level) {
+        self.at(level);
+        if let Level::L2Depth(depth) = level {
+            self.tree().build(depth.get());
         }
     }
 
@@ -87,16 +106,6 @@ fn obb(local: &LocalShape) -> Option<Obb> {
     }
 }
 
-fn cuboid(exact: &[LocalShape]) -> Option<LocalShape> {
-    if let [only] = exact
-        && let Some(half_extents) = half_extents(&only.shape)
-    {
-        return Some(LocalShape::new(Shape::Cuboid(Cuboid { half_extents }), only.in_geometry));
-    }
-    let (shape, in_geometry) = bounding_volume::cuboid(&points(exact))?;
-    Some(LocalShape::new(shape, in_geometry))
-}
-
 fn capsule(exact: &[LocalShape]) -> Option<LocalShape> {
     if let [only] = exact {
         let round = |half_length, radius| Shape::Capsule(Capsule { half_length, radius });
@@ -111,45 +120,6 @@ fn capsule(exact: &[LocalShape]) -> Option<LocalShape> {
     }
     let (shape, in_geometry) = bounding_volume::capsule(&points(exact))?;
     Some(LocalShape::new(shape, in_geometry))
-}
-
-/// The box around a primitive in its own frame.
-fn half_extents(shape: &Shape) -> Option<Vec3> {
-    match shape {
-        Shape::Sphere(s) => Some(Vec3::splat(s.radius)),
-        Shape::Capsule(c) => Some(Vec3::new(c.radius, c.radius, c.half_length + c.radius)),
-        Shape::Cylinder(c) => Some(Vec3::new(c.radius, c.radius, c.half_length)),
-        Shape::Cuboid(c) => Some(c.half_extents),
-        Shape::HalfSpace(_) | Shape::Hull(_) | Shape::Mesh(_) => None,
-    }
-}
-
-/// Points whose convex hull encloses the shapes.
-fn points(shapes: &[LocalShape]) -> Vec<Vec3> {
-    let mut points = Vec::new();
-    for s in shapes {
-        let place = |p: Vec3| s.in_geometry.transform_point(p);
-        match &s.shape {
-            Shape::Mesh(m) => points.extend(m.vertices().iter().map(|&p| place(p))),
-            Shape::Hull(h) => points.extend(h.vertices().iter().map(|&p| place(p))),
-            Shape::Cylinder(c) => points.extend(prism(c.half_length, c.radius).into_iter().map(place)),
-            other => points.extend(
-                half_extents(other)
-                    .into_iter()
-                    .flat_map(|half_extents| Obb { pose: s.in_geometry, half_extents }.corners()),
-            ),
-        }
-    }
-    points
-}
-
-/// Corners of a 24-sided prism around a cylinder along z.
-fn prism(half_length: f64, radius: f64) -> Vec<Vec3> {
-    let step = std::f64::consts::TAU / 24.0;
-    // The corners lie outside the cylinder, so that the sides touch it; slightly enlarged for rounding.
-    let out = radius / (0.5 * step).cos() * (1.0 + 1e-14);
-    let corner = |i: u32| (f64::from(i) * step).sin_cos();
-    (0..24).map(corner).flat_map(|(s, c)| [-1.0, 1.0].map(|z| Vec3::new(out * c, out * s, z * half_length))).collect()
 }
 
 /// The convex shape around one shape: the shape itself, the hull of a mesh, or the box of a mesh too flat to have a hull.

@@ -5,8 +5,10 @@ use elbowroom_proximity::contact::{ContactPoint, ContactSettings, contact_point}
 use elbowroom_proximity::{DistanceSettings, Separation, Shape, WarmStart, Workspace, separation_within};
 use elbowroom_spatial::{Obb, Pose, Vec3};
 
+use crate::box_descent::{BoxDescent, PlacedTree};
 use crate::geometry_model::GeometryModel;
 use crate::local_shape::LocalShape;
+use crate::nearer_separation::nearer;
 use crate::obb_gap::obb_gap;
 use crate::world_box::{WorldBox, round_up};
 use crate::{CheckerStats, Level, Scene, SceneState};
@@ -36,6 +38,10 @@ impl<'s> PlacedModel<'s> {
     /// The oriented box in the world; `None` if the geometry is unbounded.
     pub fn obb(&self) -> Option<Obb> {
         self.model.obb.map(|o| Obb { pose: self.in_world * o.pose, ..o })
+    }
+
+    fn tree(&self) -> PlacedTree<'s> {
+        PlacedTree { tree: self.model.tree(), in_world: self.in_world }
     }
 }
 
@@ -88,6 +94,9 @@ impl NarrowPhase {
     /// True unless the models of a level are proven farther apart than `limit` metres.
     pub fn within(&mut self, a: &PlacedModel, b: &PlacedModel, level: Level, limit: f64) -> bool {
         self.stats.pairs_tested.add(level, 1);
+        if let Level::L2Depth(depth) = level {
+            return BoxDescent::new(&mut self.workspace, depth.get()).within(&a.tree(), &b.tree(), limit);
+        }
         let (of_a, of_b) = (a.model.at(level), b.model.at(level));
         if let ([x], [y]) = (of_a, of_b) {
             return self.shapes_within(x, &a.in_world, y, &b.in_world, limit);
@@ -141,6 +150,9 @@ impl NarrowPhase {
         warm_start: &mut PairWarmStart,
     ) -> Option<Separation> {
         self.stats.pairs_tested.add(level, 1);
+        if let Level::L2Depth(depth) = level {
+            return BoxDescent::new(&mut self.workspace, depth.get()).separation(&a.tree(), &b.tree(), limit);
+        }
         let (of_a, of_b) = (a.model.at(level), b.model.at(level));
         if let ([x], [y]) = (of_a, of_b) {
             let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
@@ -264,13 +276,4 @@ fn distance_settings(limit: f64, warm_start: &mut WarmStart) -> DistanceSettings
 fn enclosure(model: &GeometryModel) -> &[LocalShape] {
     let shapes = if model.slim { &model.capsule } else { &model.cuboid };
     if matches!(shapes[..], [LocalShape { shape: Shape::Capsule(_) | Shape::Cuboid(_), .. }]) { shapes } else { &[] }
-}
-
-/// The nearer of two separations, with the smaller lower bound.
-fn nearer(best: Option<Separation>, s: Separation) -> Separation {
-    match best {
-        None => s,
-        Some(b) if b.distance <= s.distance => Separation { lower_bound: b.lower_bound.min(s.lower_bound), ..b },
-        Some(b) => Separation { lower_bound: b.lower_bound.min(s.lower_bound), ..s },
-    }
 }

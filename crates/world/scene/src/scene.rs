@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, ObjectId, Robot, RobotId};
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Obb, Pose};
 
 use crate::geometry_model::GeometryModel;
 use crate::{AllowedCollisionMatrix, MatrixError, Object};
@@ -138,6 +138,25 @@ impl Scene {
     pub fn shapes(&self, id: GeometryId) -> impl Iterator<Item = (&Shape, Pose)> + '_ {
         let model = self.model_of(id).map(|m| &self.models[m]);
         model.into_iter().flat_map(|m| m.exact.iter().map(|s| (&s.shape, s.in_geometry)))
+    }
+
+    /// The oriented boxes that [`Level::boxes`](crate::Level::boxes) compares for a link or object, in its frame.
+    ///
+    /// Each triangle of a mesh, and each other shape as a whole, is inside one of the boxes of every depth. Empty if the
+    /// link or object has no shape, or an unbounded one. The first call for a depth builds its boxes.
+    ///
+    /// ```
+    /// use elbowroom_kinematics::LinkId;
+    /// use elbowroom_robot::{GeometryId, RobotId};
+    /// use elbowroom_scene::example;
+    /// let scene = example::two_arms();
+    /// let forearm = GeometryId::Link { robot: RobotId(0), link: LinkId(3) };
+    /// // One capsule has one box at every depth.
+    /// assert_eq!([0, 3].map(|depth| scene.boxes(forearm, depth).len()), [1, 1]);
+    /// ```
+    pub fn boxes(&self, id: GeometryId, depth: u8) -> Vec<Obb> {
+        let model = self.model_of(id).map(|m| &self.models[m]).filter(|m| m.obb.is_some());
+        model.into_iter().flat_map(|m| m.tree().at_depth(depth)).filter_map(|node| node.obb).collect()
     }
 
     /// Padding of a link or object, m; 0 if it has no shape.

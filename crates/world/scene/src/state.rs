@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Aabb, Pose};
 
 use crate::attachment::Attachment;
 use crate::world_box::WorldBox;
@@ -200,6 +200,13 @@ impl SceneState {
             GeometryId::Object(o) => self.attachment(o),
             GeometryId::Link { .. } => None,
         }
+    }
+
+    /// The box of [`Level::L1`](crate::Level::L1) around a robot with the objects attached to it, in the world.
+    ///
+    /// `None` if there is no such robot, or if it has no shape or an unbounded one.
+    pub fn robot_box(&self, scene: &Scene, robot: RobotId) -> Option<Aabb> {
+        self.boxes.get(scene.models.len() + robot.0)?.aabb()
     }
 
     /// The robot and link with which the geometry moves.

@@ -7,7 +7,7 @@ use crate::Level;
 pub struct PerLevel {
     /// Number for [`Level::L1`].
     pub l1: u64,
-    /// Number for [`Level::L2`].
+    /// Number for [`Level::L2`] and all depths of the box trees.
     pub l2: u64,
     /// Number for [`Level::Capsule`].
     pub capsule: u64,
@@ -23,7 +23,7 @@ impl PerLevel {
         match level {
             Level::Auto => 0,
             Level::L1 => self.l1,
-            Level::L2 => self.l2,
+            Level::L2 | Level::L2Depth(_) => self.l2,
             Level::Capsule => self.capsule,
             Level::Hull => self.hull,
             Level::L3 => self.l3,
@@ -48,7 +48,7 @@ impl PerLevel {
         match level {
             Level::Auto => {}
             Level::L1 => self.l1 += n,
-            Level::L2 => self.l2 += n,
+            Level::L2 | Level::L2Depth(_) => self.l2 += n,
             Level::Capsule => self.capsule += n,
             Level::Hull => self.hull += n,
             Level::L3 => self.l3 += n,

@@ -62,6 +62,13 @@ impl WorldBox {
         Self::from_corners(min.map(|x| (x as f32).next_down()), max.map(|x| (x as f32).next_up()))
     }
 
+    /// The box in double precision; `None` if it is empty or unbounded.
+    pub fn aabb(&self) -> Option<Aabb> {
+        let corner = |c: &[f32; 8]| Vec3::new(c[0].into(), c[1].into(), c[2].into());
+        let found = Aabb { min: corner(&self.low), max: corner(&self.high) };
+        (found.min.is_finite() && found.max.is_finite()).then_some(found)
+    }
+
     /// The box around two boxes.
     #[inline]
     pub fn union(&self, o: &Self) -> Self {

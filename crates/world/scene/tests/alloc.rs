@@ -25,7 +25,7 @@ fn main() {
     let mut states = [SceneState::new(&scene), SceneState::new(&scene)];
     states[1].attach(&scene, ObjectId(5), RobotId(0), LinkId(3), &[]).unwrap();
     let motion = SceneMotion::new(&scene);
-    for level in [Level::Auto, Level::L1, Level::L2, Level::Capsule, Level::Hull, Level::L3] {
+    for level in [Level::Auto, Level::L1, Level::L2, Level::boxes(4), Level::Capsule, Level::Hull, Level::L3] {
         for state in &mut states {
             let mut checker = Checker::new(&scene, CheckerOptions { level, ..CheckerOptions::default() });
             let (one, other) = (Selection::Robot(RobotId(0)), Selection::Robot(RobotId(1)));

@@ -95,7 +95,7 @@ fn enclosing_volumes_report_no_fewer_pairs_and_no_larger_distances() {
     let scene = scene_of(23, |_| {});
     let mut r = Random(23);
     let mut exact = Checker::new(&scene, CheckerOptions::default());
-    let levels = [Level::L1, Level::L2, Level::Capsule, Level::Hull];
+    let levels = [Level::L1, Level::L2, Level::boxes(2), Level::Capsule, Level::Hull];
     let mut coarse = levels.map(|level| Checker::new(&scene, CheckerOptions { level, ..CheckerOptions::default() }));
     let mut more = 0;
     for _ in 0..100 {

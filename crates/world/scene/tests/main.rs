@@ -2,6 +2,7 @@
 
 mod approaching;
 mod attach;
+mod box_depths;
 mod carried_first_contacts;
 mod collision_point;
 mod common;

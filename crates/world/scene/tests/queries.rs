@@ -132,8 +132,8 @@ fn coarse_levels_are_conservative() {
     let scene = scene_of(7, |_| {});
     let mut exact = Checker::new(&scene, CheckerOptions::default());
     let mut r = Random(5);
-    let mut looser = [0; 4];
-    let levels = [Level::L1, Level::L2, Level::Capsule, Level::Hull];
+    let mut looser = [0; 6];
+    let levels = [Level::L1, Level::L2, Level::Capsule, Level::Hull, Level::boxes(1), Level::boxes(5)];
     let mut coarse = levels.map(|level| Checker::new(&scene, CheckerOptions { level, ..CheckerOptions::default() }));
     for _ in 0..300 {
         let state = random_state(&scene, &mut r);

@@ -358,7 +358,7 @@ fn no_level_or_option_misses_a_contact() {
     for start in [Level::L2, Level::L3] {
         others.push(CheckerOptions { start, matrix: false, ..CheckerOptions::default() });
     }
-    for level in [Level::L1, Level::L2, Level::Capsule, Level::Hull, Level::L3] {
+    for level in [Level::L1, Level::L2, Level::boxes(3), Level::Capsule, Level::Hull, Level::L3] {
         others.push(CheckerOptions { level, ..CheckerOptions::default() });
     }
     let mut others: Vec<_> = others.into_iter().map(|o| Checker::new(&scene, o)).collect();

@@ -1,5 +1,5 @@
 // The data of the page: deflated texts, and arrays of quantised numbers.
-if (typeof DecompressionStream === 'undefined') {
+if (!Inflate.works) {
   const note = document.getElementById('unsupported');
   note.textContent = 'The scene and the plots need a browser of 2023 or later.';
   note.hidden = false;
@@ -7,22 +7,9 @@ if (typeof DecompressionStream === 'undefined') {
 }
 
 const Data = await (async () => {
-  // A <script type="text/plain"> with raw deflate in base64.
-  async function inflate(id) {
-    const bytes = Uint8Array.from(atob(document.getElementById(id).textContent), (c) => c.charCodeAt(0));
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
-    return new Uint8Array(await new Response(stream).arrayBuffer());
-  }
-  const text = async (id) => new TextDecoder().decode(await inflate(id));
-
-  // A library that defines a global.
-  async function load(id) {
-    const script = document.createElement('script');
-    script.textContent = await text(id);
-    document.head.append(script);
-  }
-
-  const [figures, scene, arrays] = await Promise.all([text('plot-data'), text('scene-data'), inflate('array-data'), load('plotly'), load('three')]);
+  const [figures, scene, arrays] = await Promise.all([
+    Inflate.text('plot-data'), Inflate.text('scene-data'), Inflate.bytes('array-data'), Inflate.library('plotly'), Inflate.library('three'),
+  ]);
 
   const read = (entry) => Packing.read(arrays, entry);
   const data = JSON.parse(scene);

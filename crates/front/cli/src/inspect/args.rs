@@ -17,6 +17,7 @@ use crate::model_args::{JointArgs, Unit};
   elbowroom inspect arm.urdf --states q.csv      the pose of every link in the root link: a table in a terminal, else CSV
   elbowroom inspect arm.urdf --pose 0.8,0,0.9,0,3.14159265,0     all joint values with the tip there
   elbowroom inspect arm.urdf --at link_3,0.1,0,0.05  the chain that ends in a point of a surface
+  elbowroom inspect arm.urdf --brief --picture levels.html --levels  the boxes of each resolution level
   elbowroom inspect table.stl --unit mm --json")]
 #[allow(clippy::struct_excessive_bools)] // each is a command-line flag
 pub(crate) struct InspectArgs {
@@ -45,9 +46,8 @@ pub(crate) struct InspectArgs {
     /// Skip the slow parts: resolution levels, the allowed collision matrix, visual meshes
     #[arg(long, conflicts_with = "models")]
     pub(crate) brief: bool,
-    /// Also write a picture of the model with its joint axes: a PNG, or an HTML page with four views
-    #[arg(long, value_name = "FILE.png|.html", conflicts_with = "states")]
-    pub(crate) picture: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) drawing: DrawingArgs,
     /// Also write hull, middle and coarse triangles of each link as STL (metres, link frame) to this folder
     #[arg(long, value_name = "DIR", conflicts_with = "states")]
     pub(crate) models: Option<PathBuf>,
@@ -64,6 +64,18 @@ pub(crate) struct InspectArgs {
     /// Print one JSON document instead of tables
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What is drawn.
+#[derive(Debug, Args)]
+pub(crate) struct DrawingArgs {
+    /// Also write a picture of the model with its joint axes: a PNG, or an HTML page with four views
+    #[arg(long, value_name = "FILE.png|.html", conflicts_with = "states")]
+    pub(crate) picture: Option<PathBuf>,
+    /// With --picture FILE.html: a page with the boxes of `query --level` L1, L2 and L2:1 to L2:8 around a robot, a
+    /// slider over the levels, and sliders for the joints
+    #[arg(long, requires = "picture", conflicts_with_all = ["states", "at"])]
+    pub(crate) levels: bool,
 }
 
 /// Which chain of the model is asked about.

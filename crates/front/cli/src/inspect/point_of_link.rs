@@ -21,7 +21,7 @@ pub(super) fn point_of_link(
     inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let dh: Vec<_> = args.dh.iter().copied().map(Into::into).collect();
     let mut point = inspection.surface_point(&at.link, Vec3::from(at.point), &dh)?;
-    if let Some(path) = &args.picture {
+    if let Some(path) = &args.drawing.picture {
         picture(inspection, Some(&point), path)?;
     }
     if let Some(states) = &args.states {

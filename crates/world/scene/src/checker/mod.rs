@@ -60,7 +60,7 @@ impl<'s> Checker<'s> {
     pub fn new(scene: &'s Scene, options: CheckerOptions) -> Self {
         let core = CheckerCore::new(scene, options);
         // Models that are built at first use are built here.
-        scene.models.iter().for_each(|m| _ = m.at(options.level));
+        scene.models.iter().for_each(|m| m.prepare(options.level));
         let mut checker = Self { core, lists: Vec::new(), sweeper: None };
         checker.all().update(&SceneState::new(scene));
         checker

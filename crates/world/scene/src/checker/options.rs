@@ -42,7 +42,7 @@ impl CheckerOptions {
     pub(crate) fn uses_boxes(self) -> bool {
         match self.level {
             Level::Auto => self.start <= Level::L2,
-            Level::L1 | Level::L2 | Level::Hull => true,
+            Level::L1 | Level::L2 | Level::L2Depth(_) | Level::Hull => true,
             // A capsule may extend beyond the box.
             Level::Capsule | Level::L3 => false,
         }
