@@ -1,5 +1,6 @@
 //! A fence: upright walls along a polygon, with openings, as one solid.
 
+use std::f64::consts::FRAC_PI_2;
 use std::fmt;
 
 use elbowroom_proximity::tessellate::tessellate;
@@ -11,6 +12,9 @@ use elbowroom_vision::{Point2, polygon};
 const SHORTEST_M: f64 = 1e-3;
 /// Largest distance of the ends of a gate from the line of its wall, m.
 const OFF_LINE_M: f64 = 0.01;
+
+/// How far the parts of walls overlap, m: solids that share an edge would count as an open surface.
+const OVERLAP_M: f64 = 1e-6;
 
 /// Walls along the edges of a polygon, outside of it. What is within the polygon is free.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,17 +165,20 @@ impl Fence {
             if turns_right && before.along.dot(wall.along) < -1e-9 {
                 return Err(FenceError::Narrow(if runs_clockwise { (count - index) % count + 1 } else { index + 1 }));
             }
-            let [a, b] = [0.0, wall.length_m].map(|along_m| wall.point(along_m, self.thickness_m));
-            let other = |j: &usize| *j != index && (*j + 1) % count != index && (index + 1) % count != *j;
-            let outer = Wall { from: a, ..*wall };
-            if polygon::contains(&corners, a)
-                || polygon::contains(&corners, b)
-                || (0..count).filter(other).any(|j| are_crossing(&outer, &walls[j]))
-            {
-                return Err(FenceError::Thick(number(index)));
-            }
         }
-        Ok(walls)
+        match (0..count).find(|index| self.reaches_inside(&corners, &walls, *index)) {
+            Some(index) => Err(FenceError::Thick(number(index))),
+            None => Ok(walls),
+        }
+    }
+
+    /// Whether the outer side of a wall is within the fence at another place.
+    fn reaches_inside(&self, corners: &[Point2], walls: &[Wall], index: usize) -> bool {
+        let (wall, count) = (&walls[index], walls.len());
+        let outer = Wall { from: wall.point(0.0, self.thickness_m), ..*wall };
+        let is_apart = |j: &usize| *j != index && (*j + 1) % count != index && (index + 1) % count != *j;
+        [0.0, wall.length_m].iter().any(|along_m| polygon::contains(corners, outer.point(*along_m, 0.0)))
+            || (0..count).filter(is_apart).any(|j| are_crossing(&outer, &walls[j]))
     }
 
     /// The gates of each wall as panels, in the order along the wall.
@@ -230,19 +237,17 @@ impl Fence {
 
     /// Where a wall begins and ends: it closes the notch outside of a corner at which the fence turns inwards.
     fn ends(&self, walls: &[Wall], index: usize) -> [f64; 2] {
-        let count = walls.len();
-        let beyond = |a: &Wall, b: &Wall| {
-            let turn = a.along.cross(b.along).atan2(a.along.dot(b.along));
-            if turn > 0.0 { (0.5 * turn).tan().min(1.0) * self.thickness_m } else { 0.0 }
-        };
-        let (before, wall, after) = (&walls[(index + count - 1) % count], &walls[index], &walls[(index + 1) % count]);
-        [-beyond(before, wall), wall.length_m + beyond(wall, after)]
+        let (wall, after) = (&walls[index], &walls[(index + 1) % walls.len()]);
+        let turn = wall.along.cross(after.along).atan2(wall.along.dot(after.along));
+        let notch_m = self.thickness_m * turn.clamp(0.0, FRAC_PI_2).sin();
+        // A little more than up to the corner of the next wall: see `OVERLAP_M`.
+        [0.0, wall.length_m + 1.01 * notch_m]
     }
 
     fn solid(&self, wall: &Wall, panel: &Panel) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let middle = wall.point(0.5 * (panel.along_m[0] + panel.along_m[1]), 0.5 * self.thickness_m);
-        let size =
-            Vec3::new(panel.along_m[1] - panel.along_m[0], self.thickness_m, panel.heights_m[1] - panel.heights_m[0]);
+        let length_m = panel.along_m[1] - panel.along_m[0] + 2.0 * OVERLAP_M;
+        let size = Vec3::new(length_m, self.thickness_m, panel.heights_m[1] - panel.heights_m[0]);
         let at = Vec3::new(middle.x, middle.y, 0.5 * (panel.heights_m[0] + panel.heights_m[1]));
         let pose = Pose::new(Rotation::from_rpy(0.0, 0.0, wall.along.y.atan2(wall.along.x)), at);
         let (corners, sides) = tessellate(&Shape::Cuboid(Cuboid { half_extents: size * 0.5 }), 1e-3);
@@ -314,12 +319,12 @@ mod tests {
                 let p = Point2::new(random.between(-2.3, 2.3), random.between(-2.3, 2.3));
                 let (found, exact) = (distance(&mesh, Vec3::new(p.x, p.y, 1.0)), to_lines(&fence.corners, p));
                 if polygon::contains(&fence.corners, p) {
-                    assert!((found - exact).abs() < 1e-9, "{p:?}: {found} {exact}");
+                    assert!((found - exact).abs() < 2e-6, "{p:?}: {found} {exact}");
                 } else if exact < 0.05 {
                     assert!(found <= 1e-12, "{p:?} is within a wall: {found}");
                 }
             }
-            assert!((distance(&mesh, Vec3::new(-1.0, -1.0, 2.5)) - 1.0_f64.hypot(0.5)).abs() < 1e-9);
+            assert!((distance(&mesh, Vec3::new(-1.0, -1.0, 2.5)) - 1.0_f64.hypot(0.5)).abs() < 2e-6);
         }
     }
 
@@ -329,7 +334,7 @@ mod tests {
         let gates = vec![Gate { ends, heights_m: [0.8, 1.4] }];
         let mesh = Fence { gates, ..fence(&L) }.mesh().unwrap();
         let at = |y: f64, z: f64| distance(&mesh, Vec3::new(2.02, y, z));
-        assert!((at(-1.0, 1.1) - 0.3).abs() < 1e-9);
+        assert!((at(-1.0, 1.1) - 0.3).abs() < 2e-6);
         assert!([(-1.0, 0.7), (-1.0, 1.5), (-0.4, 1.1), (-1.6, 1.1)].iter().all(|(y, z)| at(*y, *z) <= 0.0));
         // From corner to corner, floor to top: no wall is left.
         let ends = [Point2::new(2.0, 0.0), Point2::new(2.0, -2.0)];

@@ -33,7 +33,8 @@ impl LevelCode {
         match level {
             Level::Auto => Self::Auto,
             Level::L1 => Self::L1,
-            Level::L2 => Self::L2,
+            // No checker of C has the deeper boxes of L2.
+            Level::L2 | Level::L2Depth(_) => Self::L2,
             Level::Capsule => Self::Capsule,
             Level::Hull => Self::Hull,
             Level::L3 => Self::L3,

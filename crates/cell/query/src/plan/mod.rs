@@ -134,13 +134,11 @@ pub fn plan(cell: &Cell, request: &PathRequest) -> Result<PathAnswer, Diagnostic
     let is_on_map = request.planner == PathPlanner::Grid;
     let mapped = is_on_map.then(|| MappedJoints::of(cell, robot, PURPOSE, &mut Vec::new())).transpose()?;
     let mut kept = tcp_motion::kept_axis(cell, &scene, (id, from), request.tcp_motion)?;
+    let moving = mapped.as_ref().map(|mapped| &mapped.joints[..]);
+    let goal_limits = GoalLimits { moving, kept: kept.as_mut() };
     let goals = match line {
         Some(_) => Vec::new(),
-        None => {
-            let moving = mapped.as_ref().map(|mapped| &mapped.joints[..]);
-            let limits = GoalLimits { moving, kept: kept.as_mut() };
-            goals(cell, &scene, &state, id, &request.to, request.options.seed, limits)?
-        }
+        None => goals(cell, &scene, &state, id, &request.to, request.options.seed, goal_limits)?,
     };
     let clearance_m = if request.options.clearance_m.is_finite() { request.options.clearance_m } else { 0.0 };
     let (covers, mut models) = (CoverCache::of_user(), CoverModels::default());

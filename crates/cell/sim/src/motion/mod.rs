@@ -14,12 +14,14 @@ mod line;
 mod plan;
 mod planned_parts;
 mod planned_paths;
+mod program_plan;
 mod segment;
 
 pub use clock::{ProgramClock, RegionSwitch};
 pub use geometry::Geometry;
 pub use grip_action::{GripAction, HeldObjects};
 pub use line::TcpLine;
-pub use plan::{PlanStep, ProgramPlan, first_grip, plan, repeated_plan};
+pub use plan::{first_grip, plan, repeated_plan};
 pub use planned_paths::{PathSearch, PlannedPaths};
+pub use program_plan::{PlanStep, ProgramPlan};
 pub use segment::Segment;

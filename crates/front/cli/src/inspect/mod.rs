@@ -53,8 +53,20 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
         Some(path) => picture(&inspection, None, path)?,
         None => {}
     }
+    write_files(&inspection, args)?;
+    if args.json {
+        inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
+        print_json(&inspection)?;
+    } else {
+        print(&inspection.to_string())?;
+    }
+    Ok(ExitStatus::Success)
+}
+
+/// Writes the models, the SRDF and the pairs that are asked for.
+fn write_files(inspection: &Inspection, args: &InspectArgs) -> Result<(), Failure> {
     if let Some(dir) = &args.models {
-        models(&inspection, dir)?;
+        models(inspection, dir)?;
     }
     if let Some(path) = &args.write_srdf {
         let what = || {
@@ -75,13 +87,7 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
         })?;
         write_pairs(&QueryModel::of_robot(&args.model, robot.clone()), path, args.accept)?;
     }
-    if args.json {
-        inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-        print_json(&inspection)?;
-    } else {
-        print(&inspection.to_string())?;
-    }
-    Ok(ExitStatus::Success)
+    Ok(())
 }
 
 /// Prints all joint values with which the tip is at a pose.
