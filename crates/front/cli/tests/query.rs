@@ -167,7 +167,7 @@ fn contradictory_calls_are_refused() {
         (&["query", "cell.toml", "--ask", "tolerance"], "tolerance=0.02"),
         (&["query", "cell.toml", "--ask", "tolerance=-1"], "0 or more"),
         (&["query", "cell.toml", "--ask", "tolerance=nan"], "0 or more"),
-        (&["query", "cell.toml", "--ask", "collision", "--level", "L4"], "auto, L1, L2, L3"),
+        (&["query", "cell.toml", "--ask", "collision", "--level", "L4"], "auto, L1, L2, L2:1 to L2:8, L3"),
         (&["query", "cell.toml", "--ask", "collision", "--srdf", "a.srdf"], "cannot be used"),
         (&["query", "cell.toml", "--ask", "collision", "--urdf", urdf], "cannot be used"),
         (&["query", urdf, "--ask", "collision"], "--urdf"),

@@ -100,7 +100,7 @@ mod tests {
         );
         // A box that fits, and no box.
         let exact = (Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.3) }), Pose::IDENTITY);
-        within(bound(&[cube(0.3, Vec3::ZERO)], &[exact.clone()]), 0.0);
+        within(bound(&[cube(0.3, Vec3::ZERO)], std::slice::from_ref(&exact)), 0.0);
         assert_eq!(bound(&[], &[exact]), 0.0);
     }
 
