@@ -4,9 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings, volume_motion_bounds};
-use elbowroom_cell::{
-    Cell, CellRobot, MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
-};
+use elbowroom_cell::{Cell, CellRobot, MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::{JointTrajectory, LinkId};
 use elbowroom_query::plan::{KeptAxis, KeptDirection, PathGoal, PathRequest, TcpMotion};
