@@ -18,7 +18,7 @@ use crate::output::{ExitStatus, Failure, cannot_write, note, print, print_json, 
 use crate::output_file::{write_bytes, write_file};
 use args::InspectArgs;
 use link_poses::link_poses;
-use picture::{levels_page, picture};
+use picture::draw;
 use point_of_link::point_of_link;
 
 pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
@@ -48,10 +48,8 @@ pub(crate) fn inspect(args: &InspectArgs) -> Result<ExitStatus, Failure> {
         inspection.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
         return link_poses(&inspection, states, args.table || std::io::stdout().is_terminal() && !args.json);
     }
-    match &args.drawing.picture {
-        Some(path) if args.drawing.levels => levels_page(&inspection, path)?,
-        Some(path) => picture(&inspection, None, path)?,
-        None => {}
+    if let Some(path) = &args.drawing.picture {
+        draw(&inspection, args.drawing.levels, path)?;
     }
     write_files(&inspection, args)?;
     if args.json {

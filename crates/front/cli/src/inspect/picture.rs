@@ -8,6 +8,11 @@ use elbowroom::report::{levels_page as page_of_levels, model_picture};
 use crate::output::{Failure, note};
 use crate::output_file::write_file;
 
+/// Writes a picture of the model, or the page of its levels.
+pub(super) fn draw(inspection: &Inspection, levels: bool, path: &Path) -> Result<(), Failure> {
+    if levels { levels_page(inspection, path) } else { picture(inspection, None, path) }
+}
+
 /// Writes a picture, or a page with four views; with the chain to a point of a link, if one is given.
 pub(super) fn picture(inspection: &Inspection, point: Option<&SurfacePoint>, path: &Path) -> Result<(), Failure> {
     if !(ends(path, "png") || ends(path, "html")) {
@@ -26,7 +31,7 @@ pub(super) fn picture(inspection: &Inspection, point: Option<&SurfacePoint>, pat
 }
 
 /// Writes a page with the boxes of each resolution level around a robot.
-pub(super) fn levels_page(inspection: &Inspection, path: &Path) -> Result<(), Failure> {
+fn levels_page(inspection: &Inspection, path: &Path) -> Result<(), Failure> {
     if !ends(path, "html") {
         let what = format!("{}: the levels are a page\n  write: --picture levels.html --levels", path.display());
         return Err(Failure::Wrong(what));
