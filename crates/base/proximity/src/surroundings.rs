@@ -50,7 +50,9 @@ pub fn surroundings(shape: &Shape, chord_error_m: f64, wall_m: f64) -> Result<Tr
     };
     let (mut vertices, mut triangles) = tessellate(shape, chord_error_m);
     if !faces_inwards {
-        triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        for triangle in &mut triangles {
+            triangle.swap(1, 2);
+        }
     }
     let bounds = Aabb::from_points(vertices.iter().copied());
     let half_extents = bounds.extent() * 0.5 + Vec3::splat(wall_m);
