@@ -33,9 +33,10 @@ fn rows_of(program: &Path, args: &[&str]) -> String {
 fn two_arms(urdf: &Path, metres: f64) -> String {
     let mut cell = "version = 1\nunits = { length = \"m\", angle = \"rad\" }\n".to_owned();
     let srdf = urdf.with_extension("srdf");
-    let srdf = if srdf.is_file() { format!("srdf = {srdf:?}\n") } else { String::new() };
+    let srdf = if srdf.is_file() { format!("srdf = '{}'\n", srdf.display()) } else { String::new() };
     for (name, y) in [("left", 0.0), ("right", metres)] {
-        write!(cell, "[robot.{name}]\nmodel = {urdf:?}\n{srdf}base = {{ at = [0, {y:?}, 0] }}\n").expect("a string");
+        write!(cell, "[robot.{name}]\nmodel = '{}'\n{srdf}base = {{ at = [0, {y:?}, 0] }}\n", urdf.display())
+            .expect("a string");
     }
     cell
 }

@@ -58,7 +58,7 @@ fn around(
 ) -> RegionSpec {
     let base = base.map(rounded);
     let apart: Vector = std::array::from_fn(|i| (border[i] - base[i]).abs());
-    let far = if apart[0] > apart[1] { 0 } else { 1 };
+    let far = usize::from(apart[0] <= apart[1]);
     let share = random.between(0.7, 1.0);
     let radius = rounded((share * apart[0].hypot(apart[1])).max(0.05));
     // Square to the axis along which the border is farthest.
