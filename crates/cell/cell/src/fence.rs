@@ -177,7 +177,9 @@ impl Fence {
         let (wall, count) = (&walls[index], walls.len());
         let outer = Wall { from: wall.point(0.0, self.thickness_m), ..*wall };
         let is_apart = |j: &usize| *j != index && (*j + 1) % count != index && (index + 1) % count != *j;
-        [0.0, wall.length_m].iter().any(|along_m| polygon::contains(corners, outer.point(*along_m, 0.0)))
+        [OVERLAP_M, wall.length_m - OVERLAP_M]
+            .iter()
+            .any(|along_m| polygon::contains(corners, outer.point(*along_m, 0.0)))
             || (0..count).filter(is_apart).any(|j| are_crossing(&outer, &walls[j]))
     }
 

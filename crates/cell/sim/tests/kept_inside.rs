@@ -29,8 +29,8 @@ direction_aware = true
 type Depth = fn(Vec3) -> f64;
 
 const ROOMS: &[(&str, Depth)] = &[
-    ("[region.room]\nshape = \"sphere\"\ncentre = [0, 0, 0.2]\nradius = 0.9\nkeep = \"inside\"\n", |p| {
-        0.9 - (p - Vec3::Z * 0.2).length()
+    ("[region.room]\nshape = \"sphere\"\ncentre = [0, 0, 0.2]\nradius = 1.1\nkeep = \"inside\"\n", |p| {
+        1.1 - (p - Vec3::Z * 0.2).length()
     }),
     (
         "[region.room]\nshape = \"cylinder\"\nbase = [0, 0, -0.9]\nradius = 0.8\nheight = 2.4\nkeep = \"inside\"\n",
