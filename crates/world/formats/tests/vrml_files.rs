@@ -66,6 +66,7 @@ fn whatever_would_lose_a_surface_is_refused() {
         ("Wheel { teeth [ Group { children [ FACE ] } ] }", "Wheel: this node is not read here"),
         ("DEF f FACE Wheel { teeth [ USE f ] }", "Wheel: this node is not read here"),
         ("Box { }", "a.wrl:2: Box: this node is not read here"),
+        ("Viewpoint { children [ FACE ] }", "a.wrl:2: Viewpoint: has no place for a surface"),
         ("Group {\n childern FACE }", "a.wrl:3: Group has no field childern, and the surface in it would be missing"),
         ("Group { children FACE children FACE }", "Group has a second children"),
         ("Shape { geometry Extrusion { } }", "a.wrl:2: the geometry Extrusion is not read"),

@@ -135,6 +135,10 @@ impl Walk<'_, '_> {
             NodeKind::Group | NodeKind::Switch | NodeKind::Lod => {}
             NodeKind::Inline => return self.inline(fields, frame, &to_scene),
             NodeKind::Shape => return self.shape(visit.node, fields, frame, &to_scene),
+            NodeKind::WithoutSurface if node.holds_surface => {
+                let what = "has no place for a surface, and the one in it would be missing";
+                return Err(fields.error(what).hint("Shape { geometry … } in a Transform or Group"));
+            }
             NodeKind::WithoutSurface => return Ok(()),
             NodeKind::Script => {
                 self.warn(fields.error("is not run").hint("the scene as it is at rest"));
