@@ -243,7 +243,9 @@ fn an_axis_that_is_kept_stays_within_its_angle() {
     }
     let refused = |request: &PathRequest| plan(&open, request).unwrap_err().to_string();
     assert!(refused(&PathRequest { tcp_motion: keep(0.1), ..request("arm", &HERE, &THERE) }).contains("wider angle"));
-    assert!(refused(&to_pose(&open, by, keep(0.0))).contains("not above 0"));
+    for angle in [0.0, -0.1, f64::NAN, std::f64::consts::PI, f64::INFINITY] {
+        assert!(refused(&to_pose(&open, by, keep(angle))).contains("not between 0 and half a turn"), "{angle}");
+    }
     let none = TcpMotion::KeptAxis(KeptAxis { axis_in_tcp: Vec3::ZERO, tolerance_rad: 0.1 });
     assert!(refused(&to_pose(&open, by, none)).contains("no direction"));
     // Out of a region no axis is kept.

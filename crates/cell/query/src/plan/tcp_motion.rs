@@ -74,9 +74,9 @@ pub(super) fn kept_axis(
     if kept.axis_in_tcp.try_normalize().is_none() {
         return Err(refused(cell, robot, "the axis to keep has no direction").hint("an axis other than 0, as 0,0,1"));
     }
-    if !(kept.tolerance_rad > 0.0 && kept.tolerance_rad.is_finite()) {
-        let what = "the angle by which a kept axis may turn is not above 0";
-        return Err(refused(cell, robot, what).hint("an angle above 0"));
+    if !(kept.tolerance_rad > 0.0 && kept.tolerance_rad < std::f64::consts::PI) {
+        let what = "the angle by which a kept axis may turn is not between 0 and half a turn";
+        return Err(refused(cell, robot, what).hint("an angle above 0 and below half a turn"));
     }
     Ok(Some(KeptDirection::of(robot, kept, from).constraint(scene, id)))
 }

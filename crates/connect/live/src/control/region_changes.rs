@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use elbowroom_cell::access::{AccessToken, Change, ControlLog, Controlled};
-use elbowroom_cell::{RegionEdit, table_changes};
+use elbowroom_cell::{EditedRegions, RegionEdit, table_changes};
 use elbowroom_formats::Diagnostic;
 use elbowroom_monitor::{Life, RegionKind};
 use elbowroom_status::SPARE_REGIONS;
@@ -43,11 +43,11 @@ impl RequestHandler {
         let is_on = self.changeable(who, &before, name, "move")?;
         is_present(&log, at)?;
         let edited = self.parts.versions.edited().map_err(refused)?;
-        let table = edited.table(&before.edits, name);
-        let moved = edited.moved(name, table.as_deref().unwrap_or_default(), &request.toml).map_err(wrong)?;
+        let table = table_of(edited, &before, name)?;
+        let moved = edited.moved(name, &table, &request.toml).map_err(wrong)?;
         let after = self.with(&before, name, Some(&moved))?;
         let (action, note) = ("move", note(request.note.as_deref())?);
-        let tables = [table, Some(moved)];
+        let tables = [Some(table), Some(moved)];
         self.carry_out(
             &mut log,
             who,
@@ -95,9 +95,10 @@ impl RequestHandler {
         self.changeable(who, &before, name, "remove")?;
         is_present(&log, at)?;
         let edited = self.parts.versions.edited().map_err(refused)?;
+        let table = table_of(edited, &before, name)?;
         let after = self.with(&before, name, None)?;
         let (action, note) = ("remove", note(request.note.as_deref())?);
-        let tables = [edited.table(&before.edits, name), None];
+        let tables = [Some(table), None];
         let change = RegionChange { action, region: name, before: &before, after, tables, is_on: false, note };
         self.carry_out(&mut log, who, &change)
     }
@@ -205,6 +206,14 @@ impl RequestHandler {
 }
 
 /// Makes the log entry of a change; `is_undone` if the change was made and reverted.
+/// The table of a region that may be changed; a fence has another one.
+fn table_of(edited: &EditedRegions, present: &PresentRegions, name: &str) -> Result<String, Refusal> {
+    edited.table(&present.edits, name).ok_or_else(|| {
+        Refusal::new(409, format!("region `{name}` is a fence: it stays as it is while the cell runs"))
+            .help("the cell file in an editor, and start the processes again")
+    })
+}
+
 fn controlled<'a>(
     who: &'a AccessToken,
     action: String,
