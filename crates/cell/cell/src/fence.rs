@@ -220,30 +220,27 @@ impl Fence {
     /// The parts of a wall that its gates leave.
     fn panels(&self, walls: &[Wall], index: usize, gates: &[Panel]) -> Vec<Panel> {
         let whole = [self.floor_m, self.floor_m + self.height_m];
-        let [start, end] = self.ends(walls, index);
         let mut panels = Vec::new();
-        let mut at = start;
+        let mut at = 0.0;
         for gate in gates {
-            // A gate that begins at the corner leaves nothing of the wall before it.
-            let from = if gate.along_m[0] <= 0.0 { start } else { gate.along_m[0] };
-            panels.push(Panel { along_m: [at, from], heights_m: whole });
+            panels.push(Panel { along_m: [at, gate.along_m[0]], heights_m: whole });
             panels.push(Panel { heights_m: [whole[0], gate.heights_m[0]], ..*gate });
             panels.push(Panel { heights_m: [gate.heights_m[1], whole[1]], ..*gate });
             at = gate.along_m[1];
         }
-        panels.push(Panel { along_m: [at, end], heights_m: whole });
+        panels.push(Panel { along_m: [at, self.end(walls, index)], heights_m: whole });
         let has_size = |[from, to]: [f64; 2]| to - from > 1e-9;
         panels.retain(|panel| has_size(panel.along_m) && has_size(panel.heights_m));
         panels
     }
 
-    /// Where a wall begins and ends: it closes the notch outside of a corner at which the fence turns inwards.
-    fn ends(&self, walls: &[Wall], index: usize) -> [f64; 2] {
+    /// Where a wall ends, m: it closes the notch outside of a corner at which the fence turns inwards.
+    fn end(&self, walls: &[Wall], index: usize) -> f64 {
         let (wall, after) = (&walls[index], &walls[(index + 1) % walls.len()]);
         let turn = wall.along.cross(after.along).atan2(wall.along.dot(after.along));
         let notch_m = self.thickness_m * turn.clamp(0.0, FRAC_PI_2).sin();
         // A little more than up to the corner of the next wall: see `OVERLAP_M`.
-        [0.0, wall.length_m + 1.01 * notch_m]
+        wall.length_m + 1.01 * notch_m
     }
 
     fn solid(&self, wall: &Wall, panel: &Panel) -> (Vec<Vec3>, Vec<[u32; 3]>) {

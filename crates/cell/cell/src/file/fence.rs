@@ -64,7 +64,8 @@ fn refused(t: &Table<'_>, corners: &Value<'_>, e: &FenceError, units: Units) -> 
         FenceError::GateOffLine { .. } | FenceError::GateWithoutSize(_) | FenceError::GatesOverlap(..) => {
             "two places on the line of one wall, and `bottom` below `top`"
         }
-        FenceError::Short(_) | FenceError::Crossing(..) | FenceError::Mesh(_) => "the corners in order, each once",
+        FenceError::Short(_) | FenceError::Crossing(..) => "the corners in order, each once",
+        FenceError::Mesh(_) => "lengths of a cell, and walls that gates leave a part of",
     };
     let what = match e {
         FenceError::GateOffLine { gate, off_m } => {

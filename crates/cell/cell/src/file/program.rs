@@ -177,7 +177,10 @@ fn switch(t: &Table<'_>, regions: &[CellRegion]) -> Result<StepAction> {
             "switches the region \"{name}\", which is permanent (line {}): no program may",
             regions[index].line
         );
-        return Err(v.error(what).hint(format!("life = \"temporary\" in [region.{name}], or leave the step out")));
+        return Err(v.error(what).hint(format!(
+            "life = \"temporary\" in the table of line {}, or leave the step out",
+            regions[index].line
+        )));
     }
     let active = t.need("active", "active = true")?.flag()?;
     Ok(StepAction::Switch { region: CellRegionId(index), active })
