@@ -44,8 +44,6 @@ const LEAVE_AFTER: f64 = 3.0;
 const MIN_SPEED: f64 = 1e-6;
 /// Distance to the robot's configuration within which a new path must pass for the robot to enter it, rad or m.
 const ENTRY_DISTANCE: f64 = 1e-6;
-/// Rounding error by which the rate at the entry may exceed the programmed override.
-const RATE_ROUNDING: f64 = 1e-3;
 
 /// A new path to the end of a planned move.
 #[derive(Debug)]
@@ -55,6 +53,8 @@ pub struct NewPath {
     play: Arc<Playback>,
     /// Whether the robot enters it in motion: without a stop in between.
     pub(super) in_motion: bool,
+    /// By how much each joint may slow down in a tick, rad/s or m/s.
+    slowing_per_tick: Vec<f64>,
 }
 
 impl NewPath {
@@ -67,7 +67,7 @@ impl NewPath {
         let most = clock.programmed_override();
         let (here, velocity) = (&clock.point().q, clock.velocity().collect::<Vec<f64>>());
         let entered = if self.in_motion {
-            entry(&self.play, here, &velocity).filter(|(_, rate)| *rate <= most + RATE_ROUNDING)
+            entry(&self.play, here, &velocity).filter(|(_, rate)| self.takes(&velocity, *rate / most))
         } else {
             let is_at_start = norm(&velocity) <= MIN_SPEED && is_near(&self.play.q(0.0), here);
             is_at_start.then_some((0.0, most))
@@ -76,6 +76,13 @@ impl NewPath {
             clock.replace_planned_move(self.play.clone(), entry_s, rate.min(most));
         }
         entered.is_some()
+    }
+
+    /// Whether a robot can go over to the path, at its entry so many times as fast as the path allows: two time-optimal
+    /// paths differ by some thousandths on the same straight.
+    fn takes(&self, velocity: &[f64], times: f64) -> bool {
+        let drop = 1.0 - 1.0 / times.max(1.0);
+        velocity.iter().zip(&self.slowing_per_tick).all(|(v, most)| v.abs() * drop <= *most)
     }
 }
 
@@ -212,7 +219,8 @@ impl<'a> PathReplanner<'a> {
             self.attempt((&placed, &boxes), &departure, &goal.q, by, (&attempt.settings, constraints))
         })?;
         let play = Arc::new(Playback::new(found.trajectory, &self.motion_bounds));
-        (Instant::now() <= deadline).then_some(NewPath { replaces: motion.path, play, in_motion })
+        let slowing_per_tick = self.at.limits.iter().map(|limit| limit.acceleration * self.tick_s).collect();
+        (Instant::now() <= deadline).then_some(NewPath { replaces: motion.path, play, in_motion, slowing_per_tick })
     }
 
     fn attempt(
