@@ -70,8 +70,8 @@ mod virtual_robot;
 mod virtual_robot_start;
 
 pub use cell::{
-    Approval, AvoidanceSpec, Cell, CellLaws, CellPairRules, CellRegion, CellRobot, CellTiming, Follow, FrameSources,
-    MapSpec, Units,
+    Approval, AvoidanceSpec, Cell, CellGrid, CellPairRules, CellRegion, CellRobot, CellTiming, Follow, FrameSources,
+    MapSpec, Monitoring, Units,
 };
 pub use cell_ik_error::CellIkError;
 pub use elbowroom_access as access;

@@ -3,6 +3,7 @@
 mod cell_units;
 mod common;
 mod errors;
+mod grids;
 mod guarded_volumes;
 mod joint_contacts;
 mod kept_inside;

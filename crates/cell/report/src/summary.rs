@@ -29,7 +29,7 @@ const STATIONARY_M_S: f64 = 1e-4;
 /// let recording = Recording {
 ///     cell: "welding column".into(), checksum: "3fa9".into(), tick_s: 0.002, duration_s: 1.0, end: RunEnd::Finished,
 ///     monitored: true,
-///     robots: vec![], regions: vec![], objects: vec![], sensors: vec![], virtual_robots: vec![], deadlocks: vec![], events: vec![],
+///     robots: vec![], regions: vec![], grids: vec![], objects: vec![], sensors: vec![], virtual_robots: vec![], deadlocks: vec![], events: vec![],
 ///     tick_ns: TickTimes::default(),
 /// };
 /// assert!(elbowroom_report::summary(&recording, 80, false).contains("welding column"));

@@ -354,9 +354,8 @@ Example:
 pub(crate) struct TeachArgs {
     /// The cell file with the robot
     pub(crate) cell: PathBuf,
-    /// The shape that the points determine
-    #[arg(long, value_enum)]
-    pub(crate) shape: TaughtShape,
+    #[command(flatten)]
+    pub(crate) shape: TaughtShapeArgs,
     /// Name of the region
     #[arg(long)]
     pub(crate) name: String,
@@ -366,6 +365,14 @@ pub(crate) struct TeachArgs {
     /// The robot that was moved to the points; optional if there is only one
     #[arg(long)]
     pub(crate) robot: Option<String>,
+}
+
+/// A shape that taught points determine.
+#[derive(Debug, Args)]
+pub(crate) struct TaughtShapeArgs {
+    /// The shape that the points determine
+    #[arg(long, value_enum)]
+    pub(crate) shape: TaughtShape,
     /// Teach with the flange instead of the TCP
     #[arg(long)]
     pub(crate) flange: bool,

@@ -35,6 +35,7 @@ mod rules;
 mod run;
 mod simulation;
 mod states;
+mod taught_region;
 mod teach;
 mod watch;
 

@@ -11,6 +11,7 @@ mod cooperating;
 mod exchange;
 pub mod findings;
 mod frame;
+mod grids;
 mod guarded;
 mod guided;
 mod kept_axes;
@@ -58,6 +59,7 @@ pub fn check(
     guided::check(cell, recording, &arms, &mut findings);
     cooperating::check(cell, recording, &arms, &mut findings);
     kept_axes::check(cell, recording, &arms, &mut findings);
+    grids::check(cell, recording, &arms, &mut findings);
     Ok(findings)
 }
 

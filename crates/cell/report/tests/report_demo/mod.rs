@@ -141,6 +141,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
             distance_m: near.then_some(distance),
             governing: near.then_some(GoverningPoint { part: 0, point: tcp }),
             reason: if near { OverrideReason::Region(RegionId(0)) } else { OverrideReason::Free },
+            outputs: 0,
         });
         s += v * tick_s;
     }
@@ -191,6 +192,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
             perception: None,
             ending: elbowroom_sim::RobotEnding::default(),
         }],
+        grids: vec![],
         objects: vec![],
         sensors: vec![],
         virtual_robots: vec![],

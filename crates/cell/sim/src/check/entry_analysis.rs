@@ -247,7 +247,7 @@ impl EntryAnalysis<'_> {
 
     /// True if the stopping-distance law is on. `override_rate` does not delay it.
     fn has_stopping_law(&self) -> bool {
-        self.cell.laws.stopping_reaction_s.is_some()
+        self.cell.monitoring.stopping_reaction_s.is_some()
     }
 
     /// True if the warning zone alone is sufficient.
@@ -257,7 +257,7 @@ impl EntryAnalysis<'_> {
 
     /// True if `direction_aware` may permit full speed within the zone.
     fn releases_leaving_robot(&self) -> bool {
-        self.cell.laws.laws.direction_aware && !self.never_reverses()
+        self.cell.monitoring.laws.direction_aware && !self.never_reverses()
     }
 
     fn has_needed_thickness(&self) -> bool {
@@ -292,7 +292,7 @@ impl EntryAnalysis<'_> {
             return "no program moves the guarded volumes, and they are outside".into();
         }
         if self.has_stopping_law() {
-            let reaction = reacts_within(self.cell.laws.reaction_s);
+            let reaction = reacts_within(self.cell.monitoring.reaction_s);
             let program = if self.plays_trajectory() {
                 "it plays the recording unchanged (its accelerations are taken into account)"
             } else {
