@@ -95,7 +95,7 @@ function createStage(corners, lineCount) {
       }
     }
     const lines = new THREE.BufferGeometry();
-    lines.setAttribute('position', new THREE.Float32BufferAttribute(points, 3));
+    lines.setAttribute('position', new THREE.BufferAttribute(new Float32Array(points), 3));
     return lines;
   }
 
