@@ -151,6 +151,26 @@ fn an_error_names_file_and_line_and_a_hint() {
     assert!(answer.stderr.contains("radius"), "{}", answer.stderr);
 }
 
+#[test]
+fn at_full_speed_the_law_of_the_paper_alone_stops_in_a_zone_that_is_thick_enough_and_not_in_a_thin_one() {
+    let text = std::fs::read_to_string(examples().join("full_speed/cell.toml")).unwrap();
+    assert!(!text.contains("[monitor]"));
+    let text = text.replace("../models", &examples().join("models").display().to_string());
+    for (warning, arguments, is_entered) in
+        [(250, &[][..], false), (100, &[][..], true), (250, &["--no-monitor"][..], true)]
+    {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("cell.toml"), text.replace("warning = 250", &format!("warning = {warning}")))
+            .unwrap();
+        let answer = elbowroom(dir.path(), &[&["run", "cell.toml", "--json", "--out", "out"][..], arguments].concat());
+        let json = answer.expect(i32::from(is_entered)).json();
+        assert_eq!(json["regions"][0]["entered"], is_entered, "{warning} {arguments:?}");
+        let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
+        let speeds = trace.lines().skip(1).map(|row| row.split(',').nth(11).unwrap().parse::<f64>().unwrap());
+        assert!(speeds.fold(0.0, f64::max) > 1.8, "as fast as the joints allow");
+    }
+}
+
 /// The number of the cell is that of the TCP in the same row, but for the hysteresis of 1 mm.
 #[test]
 fn grids_add_columns_with_the_number_of_the_occupied_cell() {
