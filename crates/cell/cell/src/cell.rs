@@ -176,6 +176,15 @@ pub struct CellRegion {
     pub follow: Option<Follow>,
     /// Largest plausible motion of that frame, for the monitors.
     pub source_limits: SourceLimits,
+    /// Whether its table is one of a fence.
+    pub is_fence: bool,
+}
+
+impl CellRegion {
+    /// Its table, as the cell file writes it: `[region.NAME]` or `[fence.NAME]`.
+    pub fn table(&self) -> String {
+        format!("[{}.{}]", if self.is_fence { "fence" } else { "region" }, self.region.name)
+    }
 }
 
 /// The source that a dynamic region follows.

@@ -99,6 +99,10 @@ impl Wall {
         self.from + self.along * along_m + self.outwards * outwards_m
     }
 
+    fn ends(&self) -> (Point2, Point2) {
+        (self.point(0.0, 0.0), self.point(self.length_m, 0.0))
+    }
+
     /// Distances of a point along the wall and from its line.
     fn place(&self, p: Point2) -> (f64, f64) {
         ((p - self.from).dot(self.along), (p - self.from).dot(self.outwards))
@@ -153,7 +157,7 @@ impl Fence {
         for i in 0..count {
             for j in i + 1..count {
                 let is_next = j == i + 1 || (i == 0 && j == count - 1);
-                if !is_next && are_crossing(&walls[i], &walls[j]) {
+                if !is_next && polygon::segments_intersect(walls[i].ends(), walls[j].ends()) {
                     let (i, j) = (number(i), number(j));
                     return Err(FenceError::Crossing(i.min(j), i.max(j)));
                 }
@@ -180,7 +184,7 @@ impl Fence {
         [OVERLAP_M, wall.length_m - OVERLAP_M]
             .iter()
             .any(|along_m| polygon::contains(corners, outer.point(*along_m, 0.0)))
-            || (0..count).filter(is_apart).any(|j| are_crossing(&outer, &walls[j]))
+            || (0..count).filter(is_apart).any(|j| polygon::segments_intersect(outer.ends(), walls[j].ends()))
     }
 
     /// The gates of each wall as panels, in the order along the wall.
@@ -252,22 +256,6 @@ impl Fence {
         let (corners, sides) = tessellate(&Shape::Cuboid(Cuboid { half_extents: size * 0.5 }), 1e-3);
         (corners.into_iter().map(|corner| pose.transform_point(corner)).collect(), sides)
     }
-}
-
-/// Whether the lines of two walls have a point in common.
-fn are_crossing(a: &Wall, b: &Wall) -> bool {
-    let ends = |wall: &Wall| [wall.point(0.0, 0.0), wall.point(wall.length_m, 0.0)];
-    let sides = |wall: &Wall, other: &Wall| ends(other).map(|end| wall.place(end).1);
-    let is_across = |[one, other]: [f64; 2]| one * other <= 0.0;
-    if !(is_across(sides(a, b)) && is_across(sides(b, a))) {
-        return false;
-    }
-    // On one line: whether the stretches overlap.
-    if a.along.cross(b.along).abs() < 1e-12 {
-        let [from, to] = ends(b).map(|end| a.place(end).0);
-        return from.max(to) >= 0.0 && from.min(to) <= a.length_m;
-    }
-    true
 }
 
 #[cfg(test)]

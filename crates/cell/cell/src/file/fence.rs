@@ -16,6 +16,8 @@ type Result<T> = std::result::Result<T, Diagnostic>;
 
 const CORNERS: &str = "corners = [[-1500, -1500], [1500, -1500], [1500, 1500], [-1500, 1500]]";
 const GATES: &str = "gates = [{ from = [1500, -400], to = [1500, 400], top = 900 }]";
+/// Corners of a fence, at most: each wall is compared with all others.
+const MOST_CORNERS: usize = 500;
 /// Thickness of the walls, m, if the file does not state it.
 const THICKNESS_M: f64 = 0.05;
 
@@ -23,8 +25,9 @@ const THICKNESS_M: f64 = 0.05;
 pub(super) fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
     let corners = t.need("corners", CORNERS)?;
     let listed = corners.list(CORNERS)?;
-    if listed.len() < 3 {
-        return Err(corners.error(format!("has {} corners and needs three or more", listed.len())).hint(CORNERS));
+    if !(3..=MOST_CORNERS).contains(&listed.len()) {
+        let what = format!("has {} corners, not 3 to {MOST_CORNERS}", listed.len());
+        return Err(corners.error(what).hint(CORNERS));
     }
     let floor_m = t.get("floor").map_or(Ok(0.0), |v| units.length_of(&v))?;
     let height_m = units.positive_length(&t.need("height", "height = 2000")?)?;

@@ -62,7 +62,8 @@ impl RegionTable<'_> {
         warnings: &mut Vec<Diagnostic>,
     ) -> Result<CellRegion> {
         let region = if self.is_fence { walls } else { solid }(self.name, &self.table, units)?;
-        read(region, &self.table, units, known, warnings)
+        let read = read(region, &self.table, units, known, warnings)?;
+        Ok(CellRegion { is_fence: self.is_fence, ..read })
     }
 }
 
@@ -98,7 +99,7 @@ fn read(
     }
     let (follow, source_limits) = followed.map_or((None, SourceLimits::default()), |(f, l)| (Some(f), l));
     let robots = robots(t, known, follow)?;
-    Ok(CellRegion { region, line: t.line, robots, follow, source_limits })
+    Ok(CellRegion { region, line: t.line, robots, follow, source_limits, is_fence: false })
 }
 
 /// A thickness or a hysteresis: beyond `plausible` metres it causes a warning, beyond [`MAX_M`] an error.

@@ -135,8 +135,8 @@ impl EntryAnalysis<'_> {
         }
         if self.region_speed_m_s > 0.0 {
             let why = "the region moves: the laws stop the robot, but the region can reach a stopped robot";
-            let name = &region.name;
-            let write = format!("warning_output = 1 in [region.{name}], wired to a stop of the carrier of the region");
+            let table = self.region().table();
+            let write = format!("warning_output = 1 in {table}, wired to a stop of the carrier of the region");
             return Some(MissingGuarantee::new(why, write));
         }
         if self.robot().avoidance.is_some() {
@@ -231,10 +231,7 @@ impl EntryAnalysis<'_> {
         let enough = units.in_file_units(needed);
         Some(MissingGuarantee::new(
             why,
-            format!(
-                "stopping_distance = true in [monitor], or warning = {enough} in [region.{}]",
-                self.region().region.name
-            ),
+            format!("stopping_distance = true in [monitor], or warning = {enough} in {}", self.region().table()),
         ))
     }
 
