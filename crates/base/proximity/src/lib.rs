@@ -17,6 +17,7 @@
 //! | get the penetration depth and direction | [`penetration`] |
 //! | get a contact point, its triangle and normals | [`contact::contact_point`] |
 //! | project a point onto a surface, get the signed distance | [`project_point`] |
+//! | cast a ray: the first point of a surface on it | [`ray_cast`] |
 //! | detect collisions of moving shapes (continuous collision detection, time of impact) | [`ccd::time_of_impact`] |
 //! | bound the time to collision | [`ccd::time_to_collision`] |
 //! | cull faces by motion | [`motion_culling::FaceCulling`] |
@@ -72,6 +73,7 @@ mod mesh_mesh;
 pub mod motion_culling;
 mod penetration;
 mod point_projection;
+mod ray_cast;
 pub mod repair;
 mod separation;
 mod shape;
@@ -84,6 +86,7 @@ mod witness_patch;
 pub use mesh_mesh::{QueryStats, WarmStart, Workspace};
 pub use penetration::{Penetration, penetration};
 pub use point_projection::{PointProjection, project_point};
+pub use ray_cast::{RayHit, ray_cast};
 pub use separation::{DistanceSettings, Separation, WitnessPoints, collides, separation, separation_within, within};
 pub use shape::{
     Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, HullError, MeshError, MeshReport, Shape, ShapeError, ShapeKind,

@@ -14,6 +14,7 @@ mod mesh_pairs;
 mod motion_culling;
 mod near_contact;
 mod properties;
+mod ray_cast;
 mod real_links;
 mod seams;
 mod separation;
