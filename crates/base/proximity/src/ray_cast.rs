@@ -67,10 +67,8 @@ struct Span {
     leave: End,
 }
 
-const UNBOUNDED: Span = Span {
-    enter: End { at: f64::NEG_INFINITY, outward: Vec3::Z },
-    leave: End { at: f64::INFINITY, outward: Vec3::Z },
-};
+const UNBOUNDED: Span =
+    Span { enter: End { at: f64::NEG_INFINITY, outward: Vec3::Z }, leave: End { at: f64::INFINITY, outward: Vec3::Z } };
 
 impl Span {
     /// The end that a ray from 0 meets first.
@@ -168,7 +166,8 @@ const LEAST_COMPONENT: f64 = 1e-9;
 fn mesh_hit(mesh: &TriMesh, from: Vec3, along: Vec3) -> Option<RayHit> {
     // The tree is searched in single precision, from a point of the box.
     let entered = box_entry(mesh.aabb(), from, along)?;
-    let searched = Vec3::from(along.to_array().map(|x| if x.abs() < LEAST_COMPONENT { LEAST_COMPONENT.copysign(x) } else { x }));
+    let searched =
+        Vec3::from(along.to_array().map(|x| if x.abs() < LEAST_COMPONENT { LEAST_COMPONENT.copysign(x) } else { x }));
     let mut first: Option<RayHit> = None;
     mesh.bvh.traverse(&Ray::new(&mesh.bvh, from + along * entered, searched), 0.0, &mut |triangle| {
         let found = triangle_hit(mesh, triangle, from, along);

@@ -6,12 +6,12 @@ use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::contact::triangle_surface;
 use elbowroom_proximity::{Shape, TriMesh};
-use elbowroom_robot::{Collider, GeometryId};
-use elbowroom_scene::{PairEdit, PairRule, PairRules, Selection};
-use elbowroom_shared_control::{Passage, Shield, ShieldError, ShieldSettings, generate_shield};
-use elbowroom_spatial::Pose;
+use elbowroom_robot::{Collider, GeometryId, ObjectId};
+use elbowroom_scene::{Object, PairEdit, PairRule, PairRules, Selection};
+use elbowroom_shared_control::{Passage, Shield, ShieldError, ShieldSettings, generate_shield, line_on_surface};
+use elbowroom_spatial::{Pose, Vec3};
 
-use crate::{Cell, CellFixture, CellOperator, CellRobot, CellTool, FixtureTool, ShieldSource};
+use crate::{Cell, CellFixture, CellOperator, CellRobot, CellTool, FixtureTool, ShieldSource, Units};
 
 impl FixtureTool {
     /// The link that carries its solid.
@@ -31,6 +31,27 @@ impl FixtureTool {
 }
 
 impl Cell {
+    /// The line of a target along the surface of an object, with points in the world: the given points, and points between
+    /// them. A closed line is the border of an area.
+    ///
+    /// # Errors
+    /// [`Diagnostic`] if the object has no surface of triangles, or the line leaves it.
+    pub fn line_on_object(
+        &self,
+        object: ObjectId,
+        points: &[Vec3],
+        is_closed: bool,
+        settings: &ShieldSettings,
+    ) -> Result<Vec<Vec3>, Diagnostic> {
+        let object = &self.objects[object.0];
+        let refused = |what: String| Diagnostic::new(&self.file, None, what);
+        let mesh = surface(object, settings, refused)?;
+        let local: Vec<Vec3> = points.iter().map(|p| object.in_world.inverse_transform_point(*p)).collect();
+        let line = line_on_surface(&mesh, &local, is_closed, settings);
+        let line = line.map_err(|e| refused(in_words(e, object, self.units)))?;
+        Ok(line.iter().map(|p| object.in_world.transform_point(*p)).collect())
+    }
+
     /// Rules of a run: a guided tool may touch what the shield of its fixture opens.
     pub fn opened_pairs(&self) -> PairRules {
         let opened = |(index, fixture): (usize, &CellFixture)| {
@@ -64,10 +85,8 @@ impl CellFixture {
         };
         let object = &cell.objects[self.protects.0];
         let refused = |what: String| Diagnostic::new(&cell.file, self.line, what);
-        let mesh: Arc<TriMesh> = triangle_surface(&object.shape, 0.25 * settings.tolerance_m).ok_or_else(|| {
-            refused(format!("\"{}\" has no surface of triangles, so it cannot be protected", object.name))
-        })?;
-        generate_shield(&mesh, target, settings).map_err(|e| refused(self.in_words(e, cell)))
+        let mesh = surface(object, settings, refused)?;
+        generate_shield(&mesh, target, settings).map_err(|e| refused(in_words(e, object, cell.units)))
     }
 
     /// Dimensions of a generated shield; `None` for one that was read.
@@ -81,38 +100,47 @@ impl CellFixture {
         let tool = Shape::Mesh(self.tool?.surface_of_link(cell)?);
         Some(shield.passage_of(&tool, &Pose::IDENTITY, self.settings()?))
     }
+}
 
-    /// An error in the units of the file, with places in the world.
-    fn in_words(&self, e: ShieldError, cell: &Cell) -> String {
-        let (units, object) = (cell.units, &cell.objects[self.protects.0]);
-        let place = |p| {
-            let p = object.in_world.transform_point(p).to_array().map(|x| units.show_length(x));
-            format!("[{}, {}, {}]", p[0], p[1], p[2])
-        };
-        let surface = match &object.shape {
-            Shape::Mesh(_) => format!("the mesh of \"{}\"", object.name),
-            _ => format!("\"{}\"", object.name),
-        };
-        match e {
-            ShieldError::OffSurface { number, point, distance_m, tolerance_m } => format!(
-                "point {number} of the target, {}, is {} off the surface of {surface}; `tolerance` allows {}",
-                place(point),
-                units.show_length(distance_m),
-                units.show_length(tolerance_m)
-            ),
-            ShieldError::LeavesSurface { number, place: at } => format!(
-                "the target leaves the surface of {surface} at {}, between its points {number} and {}; add points where \
-                 it turns",
-                place(at),
-                number + 1
-            ),
-            ShieldError::TooFine { tolerance_m, triangles } => format!(
-                "a `tolerance` of {} needs about {triangles} triangles, at most {} are allowed; choose a larger one",
-                units.show_length(tolerance_m),
-                ShieldError::MOST_TRIANGLES
-            ),
-            ShieldError::Surface(why) => format!("{surface} cannot be protected: {why}"),
-            other => other.to_string(),
-        }
+/// The triangles that a shield protects, in the frame of the object.
+fn surface(
+    object: &Object,
+    settings: &ShieldSettings,
+    refused: impl Fn(String) -> Diagnostic,
+) -> Result<Arc<TriMesh>, Diagnostic> {
+    triangle_surface(&object.shape, 0.25 * settings.tolerance_m)
+        .ok_or_else(|| refused(format!("\"{}\" has no surface of triangles, so it cannot be protected", object.name)))
+}
+
+/// An error in the units of the file, with places in the world.
+fn in_words(e: ShieldError, object: &Object, units: Units) -> String {
+    let place = |p| {
+        let p = object.in_world.transform_point(p).to_array().map(|x| units.show_length(x));
+        format!("[{}, {}, {}]", p[0], p[1], p[2])
+    };
+    let surface = match &object.shape {
+        Shape::Mesh(_) => format!("the mesh of \"{}\"", object.name),
+        _ => format!("\"{}\"", object.name),
+    };
+    match e {
+        ShieldError::OffSurface { number, point, distance_m, tolerance_m } => format!(
+            "point {number} of the target, {}, is {} off the surface of {surface}; `tolerance` allows {}",
+            place(point),
+            units.show_length(distance_m),
+            units.show_length(tolerance_m)
+        ),
+        ShieldError::LeavesSurface { number, place: at } => format!(
+            "the target leaves the surface of {surface} at {}, between its points {number} and {}; add points where \
+             it turns",
+            place(at),
+            number + 1
+        ),
+        ShieldError::TooFine { tolerance_m, triangles } => format!(
+            "a `tolerance` of {} needs about {triangles} triangles, at most {} are allowed; choose a larger one",
+            units.show_length(tolerance_m),
+            ShieldError::MOST_TRIANGLES
+        ),
+        ShieldError::Surface(why) => format!("{surface} cannot be protected: {why}"),
+        other => other.to_string(),
     }
 }

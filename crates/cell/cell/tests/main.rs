@@ -2,6 +2,7 @@
 
 mod cell_units;
 mod common;
+mod drawn_fixture;
 mod errors;
 mod grids;
 mod guarded_volumes;

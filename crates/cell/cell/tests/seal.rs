@@ -1,12 +1,8 @@
 //! A seal covers all inputs of the monitors: every number and word of a cell that its checksum depends on.
 
-use std::path::Path;
-
-use crate::common::{ARM, HEAD, rail};
+use crate::common::{ARM, HEAD, rail, sealed};
 use elbowroom_cell::Cell;
-use elbowroom_cell::access::PrivateKey;
-use elbowroom_cell::seal::{Signer, history, seal};
-use elbowroom_monitor::AccessClass;
+use elbowroom_cell::seal::history;
 
 /// Every kind of table that affects a monitor.
 fn text() -> String {
@@ -24,16 +20,6 @@ fn text() -> String {
          [program.a]\nsteps = [{{ move = \"joint\", to = [500], speed = 50 }}, {{ wait = 0.1 }}]\n",
         rail("a", 0.0),
     )
-}
-
-fn sealed(dir: &Path, text: &str) {
-    let key = PrivateKey::generate(AccessClass::Integrator, "I").unwrap();
-    let public = key.public().to_hex();
-    let trusted = format!("[[key]]\nclass = \"integrator\"\nname = \"I\"\npublic = \"{public}\"\n");
-    std::fs::write(dir.join("trusted-keys.toml"), trusted).unwrap();
-    std::fs::write(dir.join("cell.toml"), text).unwrap();
-    let signer = Signer { class: AccessClass::Integrator, key: &key, note: None };
-    seal(&dir.join("cell.toml"), &signer).unwrap_or_else(|e| panic!("{e}"));
 }
 
 /// The text with each number increased by one, each quoted word replaced, and each line removed.

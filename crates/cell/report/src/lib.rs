@@ -17,7 +17,7 @@
 //! (all since 2023); result and tables need no script.
 //!
 //! [`map_pictures`] writes images of slices of a joint-space map, [`map_page`] one page with a slider over them,
-//! [`model_picture`] an image of a robot model with its joint axes. [`cell_data`] and [`shared_assets`] are for other
+//! [`model_picture`] an image of a robot model with its joint axes. [`cell_data`], [`mesh_data`] and [`shared_assets`] are for other
 //! pages with the 3-D scene of a cell.
 //!
 //! ```
@@ -51,6 +51,7 @@ mod html;
 pub mod levels_page;
 pub mod map_page;
 pub mod map_pictures;
+mod mesh_data;
 pub mod model_picture;
 mod packing;
 mod page_meshes;
@@ -71,6 +72,7 @@ mod summary;
 mod tables;
 
 pub use html::{HtmlReport, write_html};
+pub use mesh_data::mesh_data;
 pub use scene::{ReportMesh, ReportObject, ReportRobot, ReportScene};
 pub use scene_data::{PageData, cell_data};
 pub use summary::{TextSummary, summary};

@@ -20,6 +20,12 @@ pub enum ViewError {
          ssh -L {port}:127.0.0.1:{port} HOST", port = .0.port()
     )]
     NotEncrypted(SocketAddr),
+    /// Other computers can reach the address of a page that writes into the cell file.
+    #[error(
+        "{0} can be reached from other computers, and targets are drawn only at this one\n  \
+         write: 127.0.0.1:{port}, and on the other computer a tunnel: ssh -L {port}:127.0.0.1:{port} HOST", port = .0.port()
+    )]
+    DrawnFromElsewhere(SocketAddr),
     /// A certificate or its key cannot be used.
     #[error("{}: {why}\n  write: {instead}", file.display())]
     Certificate {

@@ -4,19 +4,20 @@ use std::io::{self, Write as _};
 
 use elbowroom_cell::Cell;
 use elbowroom_kinematics::ChainState;
-use elbowroom_report::cell_data;
+use elbowroom_report::{PageData, cell_data};
 use elbowroom_spatial::Pose;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde_json::{Value, json};
 
-/// Makes the document of [`packed`] and the arrays: the data of the cell for the page.
-fn document(cell: &Cell, mode: &str) -> (Value, Vec<u8>) {
+/// Makes the data of the cell for the page.
+fn document(cell: &Cell, mode: &str, draws: bool) -> PageData {
     let data = cell_data(cell);
     let mut json = data.json;
     json["cell"] = cell.name.as_str().into();
     json["checksum"] = cell.approval.checksum.as_str().into();
     json["mode"] = mode.into();
+    json["draws"] = draws.into();
     for (robot, r) in members(&mut json["robots"]).zip(&cell.robots) {
         let absent: Vec<usize> = r.payload.tools.iter().filter(|t| !t.mounted).map(|t| t.link.0).collect();
         robot["start"] = r.start.clone().into();
@@ -33,18 +34,22 @@ fn document(cell: &Cell, mode: &str) -> (Value, Vec<u8>) {
         region["warning_m"] = r.region.warning_m.into();
         region["robots"] = r.robots.iter().map(|id| cell.robots[id.0].name.as_str()).collect::<Vec<_>>().into();
     }
-    (json, data.arrays)
+    PageData { json, arrays: data.arrays }
 }
 
-/// Packs the geometry for the page: the length of a JSON document (32 bits, little-endian), the document, and the
-/// arrays that it refers to; compressed as gzip.
-pub(crate) fn packed(cell: &Cell, mode: &str) -> io::Result<Vec<u8>> {
-    let (json, arrays) = document(cell, mode);
-    let json = json.to_string();
+/// Packs the geometry for the page; `draws` tells it that targets of fixtures are drawn.
+pub(crate) fn packed(cell: &Cell, mode: &str, draws: bool) -> io::Result<Vec<u8>> {
+    packed_data(&document(cell, mode, draws))
+}
+
+/// Packs data for the page: the length of a JSON document (32 bits, little-endian), the document, and the arrays that it
+/// refers to; compressed as gzip.
+pub(crate) fn packed_data(data: &PageData) -> io::Result<Vec<u8>> {
+    let json = data.json.to_string();
     let mut encoder = GzEncoder::new(Vec::new(), Compression::new(6));
     encoder.write_all(&u32::try_from(json.len()).map_err(io::Error::other)?.to_le_bytes())?;
     encoder.write_all(json.as_bytes())?;
-    encoder.write_all(&arrays)?;
+    encoder.write_all(&data.arrays)?;
     encoder.finish()
 }
 

@@ -2,7 +2,8 @@
 //!
 //! [`Server::watch`] shows a running cell: the caller publishes a [`CellStatus`](elbowroom_status::CellStatus) whenever
 //! it has one, and is never delayed by a browser. [`Server::jog`] shows a cell at rest, whose robots a person moves in
-//! the page (`elbowroom view`). Both compute the shown distances with the engine, from the joint values of the status,
+//! the page (`elbowroom view`); with [`Server::draw`] a person also draws targets of virtual fixtures there, which are
+//! written into the cell file. All compute the shown distances with the engine, from the joint values of the status,
 //! so that they equal the distances of `elbowroom query`. `docs/view.md` describes the page and its protection.
 //!
 //! ```
@@ -27,6 +28,7 @@
 //!
 //! **Invariant.** Whatever browsers do, [`StatusFeed::publish`] never waits for one of them.
 
+mod drawing;
 mod engine;
 mod error;
 mod event_log;

@@ -3,48 +3,27 @@
 use std::fmt::Write;
 
 use elbowroom::Diagnostic;
-use elbowroom::cell::{Cell, CellFixture};
+use elbowroom::cell::{Cell, CellFixture, ShieldReport};
 use elbowroom::formats::{MeshData, stl};
 use elbowroom::proximity::TriMesh;
-use elbowroom::shared_control::{Passage, Shield};
 use elbowroom::spatial::Pose;
-use serde::Serialize;
 
 use crate::args::FixtureArgs;
 use crate::output::{ExitStatus, Failure, note, print, print_json};
 use crate::output_file::write_bytes;
-
-#[derive(Serialize)]
-struct Answer<'a> {
-    name: &'a str,
-    protects: &'a str,
-    active: bool,
-    triangles: usize,
-    closed: bool,
-    components: usize,
-    /// `None` for a shield that was read.
-    tolerance_m: Option<f64>,
-    narrowest_m: Option<f64>,
-    tool_width_m: Option<f64>,
-    /// `None` if the file names no tool.
-    reachable: Option<bool>,
-    /// A point of the target that the tool does not reach, in the world.
-    blocked_at_m: Option<[f64; 3]>,
-}
 
 pub(crate) fn fixture(args: &FixtureArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     let fixture = named(&cell, args)?;
     let shield = fixture.shield(&cell)?;
     let object = &cell.objects[fixture.protects.0];
-    let passage = fixture.passage(shield, &cell);
     if let Some(path) = &args.out {
         let mut bytes = Vec::new();
         stl::write_binary(&mut bytes, &[in_world(&shield.mesh, &object.in_world, &fixture.name)])
             .map_err(|e| Failure::Wrong(e.to_string()))?;
         write_bytes(path, bytes)?;
     }
-    let answer = answer(fixture, &object.name, shield, passage, &object.in_world);
+    let answer = fixture.report(&cell)?;
     if args.json {
         print_json(&answer)?;
     } else {
@@ -82,31 +61,7 @@ fn in_world(mesh: &TriMesh, in_world: &Pose, name: &str) -> MeshData {
     MeshData { name: name.to_owned(), vertices, triangles: mesh.triangles().to_vec() }
 }
 
-fn answer<'a>(
-    fixture: &'a CellFixture,
-    protects: &'a str,
-    shield: &Shield,
-    passage: Option<Passage>,
-    object_in_world: &Pose,
-) -> Answer<'a> {
-    let report = shield.mesh.report();
-    let blocked_at = passage.and_then(|p| p.blocked_at);
-    Answer {
-        name: &fixture.name,
-        protects,
-        active: fixture.active,
-        triangles: shield.mesh.triangles().len(),
-        closed: report.closed && !report.inside_out,
-        components: shield.mesh.component_vertices().len(),
-        tolerance_m: fixture.settings().map(|s| s.tolerance_m),
-        narrowest_m: passage.map(|p| p.narrowest_m).or_else(|| fixture.settings().map(|s| shield.narrowest_m(s))),
-        tool_width_m: passage.map(|p| p.tool_width_m),
-        reachable: passage.map(|p| p.blocked_at.is_none()),
-        blocked_at_m: blocked_at.map(|p| object_in_world.transform_point(p).to_array()),
-    }
-}
-
-fn text(answer: &Answer<'_>, cell: &Cell) -> String {
+fn text(answer: &ShieldReport, cell: &Cell) -> String {
     // To a hundredth of a millimetre.
     let length = |metres: f64| cell.units.show_length((metres * 1e5).round() / 1e5);
     let mut text = format!("{}: a shield around {}, {} triangles", answer.name, answer.protects, answer.triangles);

@@ -58,5 +58,5 @@ pub use guided_arm::{ArmLimit, GuidedArm, GuidedStep};
 pub use navigation_step::{Limit, NavigationStep};
 pub use navigator_settings::NavigatorSettings;
 pub use protected_surface::ProtectedSurface;
-pub use shield::{Passage, Shield, ShieldError, ShieldSettings, ShieldTarget, generate_shield};
+pub use shield::{Passage, Shield, ShieldError, ShieldSettings, ShieldTarget, generate_shield, line_on_surface};
 pub use surface_navigator::SurfaceNavigator;

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
+use elbowroom_formats::toml_tables::Table;
 use elbowroom_formats::{Diagnostic, toml_tables};
+
+use crate::Units;
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -55,6 +58,12 @@ impl CellFile {
     /// Marks the file as not read from disk, so that no seal is verified: for changes in memory.
     pub(crate) fn unsealed(self) -> Self {
         Self { on_disk: false, ..self }
+    }
+
+    /// Reads the units of its numbers.
+    pub(crate) fn units(&self) -> Result<Units> {
+        let root = Table { file: &self.file, name: String::new(), line: 1, entries: &self.entries };
+        Units::read(&root)
     }
 
     /// Names of the regions, fences among them, in file order.

@@ -68,17 +68,20 @@ fn generated(t: &Table<'_>, units: Units, object_in_world: Pose) -> Result<Shiel
     if let Some(unit) = t.get("mesh_unit") {
         return Err(unit.error("is of a `mesh`, which this fixture does not have").hint("no `mesh_unit`"));
     }
-    let flare_rad = t.get("flare").map_or(Ok(0.0), |v| {
+    let flare = |v: Value<'_>| {
         let flare_rad = units.angle.to_radians(v.not_negative()?);
         let is_usable = flare_rad.to_degrees() <= 80.0;
         if is_usable { Ok(flare_rad) } else { Err(v.error("is more than 80°").hint("flare = 15   (degrees)")) }
-    })?;
+    };
+    let flare_rad = t.get("flare").map(flare).transpose()?;
+    let width_m = units.positive_length(&t.need("width", "width = 8   (of the opening)")?)?;
+    let default = ShieldSettings::with_width(width_m);
     let settings = ShieldSettings {
-        offset_m: length("offset", 0.002)?,
-        width_m: units.positive_length(&t.need("width", "width = 8   (of the opening)")?)?,
-        depth_m: depth_m.map_or_else(|| length("depth", 0.0), Ok)?,
-        flare_rad,
-        tolerance_m: t.get("tolerance").map_or(Ok(0.002), |v| units.positive_length(&v))?,
+        offset_m: length("offset", default.offset_m)?,
+        width_m,
+        depth_m: depth_m.map_or_else(|| length("depth", default.depth_m), Ok)?,
+        flare_rad: flare_rad.unwrap_or(default.flare_rad),
+        tolerance_m: t.get("tolerance").map_or(Ok(default.tolerance_m), |v| units.positive_length(&v))?,
     };
     Ok(ShieldSource::Generated { target, settings })
 }

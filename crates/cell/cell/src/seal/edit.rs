@@ -14,6 +14,7 @@ use super::log::{Log, log_of};
 use super::result::Result;
 use super::state::{SealedState, least_class, without_consequences};
 use crate::file::REGION_TABLES;
+use crate::toml_edits::{appended, document, put};
 use crate::{Cell, CellFile};
 
 /// An edit. Values are TOML: `150`, `[900, 0, 0]`, `"temporary"`. Anything that is not TOML is treated as text.
@@ -320,11 +321,6 @@ fn edited(cell: &Path, text: &str, edit: &CellEdit) -> Result<String> {
     Ok(document.to_string())
 }
 
-fn document(path: &Path, text: &str) -> Result<DocumentMut> {
-    // The file was already parsed; errors there have lines.
-    text.parse().map_err(|e: toml_edit::TomlError| Diagnostic::new(path, None, e.message().to_owned()))
-}
-
 /// The tables that hold this region: those of `[region.NAME]` or of `[fence.NAME]`.
 fn tables_with<'d>(document: &'d mut DocumentMut, region: &str) -> Option<&'d mut dyn TableLike> {
     let word = REGION_TABLES.into_iter().find(|word| has(document, word, region))?;
@@ -361,8 +357,7 @@ fn added(cell: &Path, document: &DocumentMut, text: &str, toml: &str, from: &Pat
         let hint = format!("elbowroom region change {} {name} KEY=VALUE --as CLASS --key FILE", cell.display());
         return Err(Diagnostic::new(cell, None, what).hint(hint));
     }
-    let gap = if toml.starts_with('\n') { "" } else { "\n" };
-    Ok(format!("{}\n{gap}{}\n", text.trim_end_matches('\n'), toml.trim_end_matches('\n')))
+    Ok(appended(text, toml))
 }
 
 fn change(
@@ -381,14 +376,4 @@ fn change(
         put(table, key, value.parse().unwrap_or_else(|_| Value::from(value.as_str())));
     }
     Ok(())
-}
-
-/// Sets a key; whitespace and comments around an existing value stay.
-fn put(table: &mut dyn TableLike, key: &str, mut value: Value) {
-    if let Some(old) = table.get_mut(key).and_then(Item::as_value_mut) {
-        *value.decor_mut() = old.decor().clone();
-        *old = value;
-    } else {
-        table.insert(key, Item::Value(value));
-    }
 }

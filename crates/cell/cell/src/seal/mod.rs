@@ -60,6 +60,14 @@ pub(crate) fn verify(file: &CellFile, cell: &Cell) -> Result<Option<Seal>> {
     }
 }
 
+/// Whether changes of this cell file need a key: it has a log, or comes under a file of trusted keys.
+///
+/// # Errors
+/// [`Diagnostic`] if the file of trusted keys cannot be read.
+pub(crate) fn is_guarded(cell: &Path) -> Result<bool> {
+    Ok(log_of(cell).exists() || TrustedKeys::find(cell)?.is_some())
+}
+
 /// Reads and verifies the log of a cell file, whether or not the cell matches its seal.
 ///
 /// # Errors

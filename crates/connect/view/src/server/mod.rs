@@ -1,6 +1,8 @@
 //! Server: connections, requests, and the WebSocket of each page.
 
 mod assets;
+mod draw_routes;
+mod responses;
 mod routes;
 mod session;
 mod shared;

@@ -2,37 +2,42 @@
 
 use std::sync::Arc;
 
-use axum::body::Bytes;
 use axum::extract::State;
 use axum::extract::ws::WebSocketUpgrade;
-use axum::http::{HeaderMap, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode};
 use axum::middleware;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use axum::{Extension, Router};
 
 use super::assets::Asset;
+use super::draw_routes::draw_routes;
+use super::responses::{compressed, has_token, no_token};
 use super::session;
 use super::shared::Shared;
+use crate::drawing::TargetDrawing;
 use crate::http::{Place, read_only};
 
 /// Builds the router. Only these paths exist, so no path leads to other files.
-pub(crate) fn routes(shared: Arc<Shared>, assets: Vec<Asset>) -> Router {
+///
+/// With a cell whose targets are drawn, the routes for that are added.
+pub(crate) fn routes(shared: Arc<Shared>, assets: Vec<Asset>, drawing: Option<Arc<TargetDrawing>>) -> Router {
+    let draw = drawing.map(|drawing| draw_routes(&shared, drawing));
     let with_assets = assets.into_iter().fold(Router::new(), |router, Asset { path, kind, gzip }| {
         let answer = move || async move { compressed(kind, gzip) };
         router.route(path, get(answer))
     });
-    with_assets
+    let pages = with_assets
         .route("/geometry", get(geometry))
         .route("/history", get(history))
         .route("/socket", get(socket))
         .fallback(|| async { (StatusCode::NOT_FOUND, "not here\n") })
         .layer(middleware::from_fn(read_only))
-        .with_state(shared)
-}
-
-fn compressed(kind: &'static str, gzip: Bytes) -> Response {
-    ([(header::CONTENT_TYPE, kind), (header::CONTENT_ENCODING, "gzip")], gzip).into_response()
+        .with_state(shared);
+    match draw {
+        Some(draw) => pages.merge(draw),
+        None => pages,
+    }
 }
 
 /// Serves the geometry, only with the token: it describes the cell.
@@ -53,16 +58,6 @@ async fn history(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Respo
         Ok(Ok(packed)) => compressed("application/json", packed.into()),
         _ => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
     }
-}
-
-fn has_token(shared: &Shared, headers: &HeaderMap) -> bool {
-    let given = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
-    let token = given.and_then(|value| value.strip_prefix("Bearer "));
-    token.is_some_and(|token| shared.token.is(token))
-}
-
-fn no_token() -> Response {
-    (StatusCode::UNAUTHORIZED, "the token is missing or another one\n").into_response()
 }
 
 async fn socket(

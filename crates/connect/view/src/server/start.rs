@@ -3,6 +3,7 @@
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use elbowroom_cell::Cell;
 use tokio::sync::{Semaphore, watch};
@@ -11,6 +12,7 @@ use super::assets;
 use super::routes::routes;
 use super::shared::Shared;
 use super::token::Token;
+use crate::drawing::TargetDrawing;
 use crate::engine::{self, JogCell, Model, SentFrame};
 use crate::feed::StatusFeed;
 use crate::geometry;
@@ -19,6 +21,9 @@ use crate::http::{Hosts, HttpServer};
 use crate::inbox::Inbox;
 use crate::source::{RunningCell, ViewSource};
 use crate::{ServerSettings, ViewError};
+
+/// Longest time of a request in a server where shields are made: fine ones take minutes.
+const SHIELD_TIME: Duration = Duration::from_secs(600);
 
 /// A cell in a browser, until it is stopped or dropped. It has its own threads; its caller is not async.
 #[derive(Debug)]
@@ -36,7 +41,7 @@ impl Server {
     /// # Errors
     /// [`ViewError`] if the server cannot listen at the address, or the cell has no model.
     pub fn watch(cell: &Cell, feed: &StatusFeed, settings: ServerSettings) -> Result<Self, ViewError> {
-        Self::start(Model::of(cell)?, RunningCell, feed.inbox.clone(), settings)
+        Self::start(Model::of(cell)?, RunningCell, feed.inbox.clone(), settings, None)
     }
 
     /// Shows a cell at rest; its robots are moved in the page.
@@ -46,7 +51,24 @@ impl Server {
     pub fn jog(cell: &Cell, settings: ServerSettings) -> Result<Self, ViewError> {
         let model = Model::of(cell)?;
         let source = JogCell::new(model.cell.clone(), model.setups.clone())?;
-        Self::start(model, source, Arc::default(), settings)
+        Self::start(model, source, Arc::default(), settings, None)
+    }
+
+    /// Shows a cell at rest, in whose page targets of virtual fixtures are drawn and written into the file of the cell.
+    ///
+    /// # Errors
+    /// As [`Self::watch`]; [`ViewError::DrawnFromElsewhere`] for an address that other computers reach, and
+    /// [`ViewError::Cell`] if the file of the cell cannot be read.
+    pub fn draw(cell: &Cell, mut settings: ServerSettings) -> Result<Self, ViewError> {
+        let address = settings.endpoint.address();
+        if !address.ip().is_loopback() {
+            return Err(ViewError::DrawnFromElsewhere(address));
+        }
+        settings.limits.request = settings.limits.request.max(SHIELD_TIME);
+        let model = Model::of(cell)?;
+        let source = JogCell::new(model.cell.clone(), model.setups.clone())?;
+        let drawing = Arc::new(TargetDrawing::new(&model.cell)?);
+        Self::start(model, source, Arc::default(), settings, Some(drawing))
     }
 
     fn start(
@@ -54,6 +76,7 @@ impl Server {
         mut source: impl ViewSource + Send + 'static,
         inbox: Arc<Inbox>,
         settings: ServerSettings,
+        drawing: Option<Arc<TargetDrawing>>,
     ) -> Result<Self, ViewError> {
         let ServerSettings { endpoint, limits } = settings;
         let token = Token::random()?;
@@ -64,7 +87,7 @@ impl Server {
                 token: token.clone(),
                 hosts: hosts.clone(),
                 limits,
-                geometry: geometry::packed(&model.cell, source.mode())?.into(),
+                geometry: geometry::packed(&model.cell, source.mode(), drawing.is_some())?.into(),
                 inbox: inbox.clone(),
                 history: history.clone(),
                 frames,
@@ -73,7 +96,7 @@ impl Server {
             })
         };
         let http = HttpServer::start("view", &endpoint, limits.of_connections(), |_, hosts| {
-            Ok(routes(Arc::new(shared(hosts)?), assets::assets()?))
+            Ok(routes(Arc::new(shared(hosts)?), assets::assets()?, drawing.clone()))
         })?;
         let (to_engine, kept) = (inbox.clone(), history);
         let engine = std::thread::Builder::new().name("view engine".into()).spawn(move || {

@@ -61,11 +61,15 @@ pub(crate) struct LiveArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  elbowroom view cell.toml                       prints an address to open in a browser")]
+  elbowroom view cell.toml                       prints an address to open in a browser
+  elbowroom view cell.toml --draw                also draws targets of virtual fixtures there (docs/view.md)")]
 #[cfg_attr(not(feature = "live"), allow(dead_code))]
 pub(crate) struct ViewArgs {
     /// The cell file
     pub(crate) cell: PathBuf,
+    /// Draw targets of virtual fixtures on objects in the page, and write them into the cell file; only at this computer
+    #[arg(long, conflicts_with = "certificate")]
+    pub(crate) draw: bool,
     #[command(flatten)]
     pub(crate) page: PageArgs,
 }

@@ -13,7 +13,8 @@ pub(crate) fn view(args: &ViewArgs) -> Result<ExitStatus, Failure> {
     let settings = ServerSettings::new(endpoint("--web", text, &args.page)?);
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let server = Server::jog(&cell, settings).map_err(|e| wrong("--web", &e))?;
+    let server = if args.draw { Server::draw(&cell, settings) } else { Server::jog(&cell, settings) };
+    let server = server.map_err(|e| wrong("--web", &e))?;
     note(server.url());
     server.wait_for_interrupt().map_err(|e| wrong("--web", &e))?;
     server.stop();

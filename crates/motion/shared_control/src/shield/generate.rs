@@ -67,9 +67,7 @@ pub fn generate_shield(
     let edge_m = settings.tolerance_m / EDGES_PER_TOLERANCE;
     check_fineness(protected, settings)?;
     let solid = Shape::Mesh(protected.clone());
-    // Openings this far apart leave ridges of a quarter of the tolerance between them.
-    let spacing_m = (settings.width_m * settings.tolerance_m).sqrt();
-    let surface = TargetSurface::new(&solid, protected, settings.tolerance_m, spacing_m, settings.width_m);
+    let surface = TargetSurface::new(&solid, protected, settings);
     let feet = surface.feet(target)?;
     // The level lies half the tolerance outside, so that no facet cuts into what is protected; the opening is wider by as
     // much.

@@ -21,6 +21,18 @@ pub struct ShieldSettings {
 }
 
 impl ShieldSettings {
+    /// Settings with a width and the defaults of a cell file: an offset of 2 mm, no depth, parallel walls, a tolerance of
+    /// 2 mm.
+    pub fn with_width(width_m: f64) -> Self {
+        Self { offset_m: 0.002, width_m, depth_m: 0.0, flare_rad: 0.0, tolerance_m: 0.002 }
+    }
+
+    /// Largest distance of two neighbouring points of the target, metres: openings this far apart leave ridges of a quarter
+    /// of the tolerance between them.
+    pub(super) fn spacing_m(&self) -> f64 {
+        (self.width_m * self.tolerance_m).sqrt()
+    }
+
     pub(super) fn check(&self) -> Result<(), ShieldError> {
         let positive = [("width_m", self.width_m), ("tolerance_m", self.tolerance_m)];
         let not_negative = [("offset_m", self.offset_m), ("depth_m", self.depth_m), ("flare_rad", self.flare_rad)];

@@ -7,6 +7,7 @@ use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use super::error::ShieldError;
 use super::opening::Foot;
+use super::settings::ShieldSettings;
 
 /// What the tool is to reach, in the frame of the protected mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,7 +56,8 @@ const LEAST_DRILL_COSINE: f64 = 0.258_8;
 
 impl<'a> TargetSurface<'a> {
     /// `shape` is the mesh.
-    pub fn new(shape: &'a Shape, mesh: &'a TriMesh, tolerance_m: f64, spacing_m: f64, radius_m: f64) -> Self {
+    pub fn new(shape: &'a Shape, mesh: &'a TriMesh, settings: &ShieldSettings) -> Self {
+        let (tolerance_m, spacing_m, radius_m) = (settings.tolerance_m, settings.spacing_m(), settings.width_m);
         Self { shape, mesh, tolerance_m, spacing_m, radius_m }
     }
 
@@ -106,7 +108,7 @@ impl<'a> TargetSurface<'a> {
     }
 
     /// The given points and points between them, all on the surface and no farther apart than the spacing.
-    fn line(&self, points: &[Vec3], needed: usize) -> Result<Vec<Vec3>, ShieldError> {
+    pub fn line(&self, points: &[Vec3], needed: usize) -> Result<Vec<Vec3>, ShieldError> {
         if points.len() < needed {
             return Err(ShieldError::TooFewPoints { needed });
         }
