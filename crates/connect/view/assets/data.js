@@ -1,3 +1,12 @@
+// A document of the program, and how meshes of its arrays are read.
+function unpack(buffer) {
+  const length = new DataView(buffer).getUint32(0, true);
+  const data = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
+  const arrays = new Uint8Array(buffer, 4 + length);
+  const read = (entry) => Packing.read(arrays, entry);
+  return { data, mesh: ({ v, i }) => ({ v: read(v), i: Uint32Array.from(read(i)) }) };
+}
+
 // The geometry of the cell, fetched once.
 const Data = await (async () => {
   let response;
@@ -11,12 +20,8 @@ const Data = await (async () => {
     Link.setState('refused', 'The token in the address of this page is missing or another one. Open the address that the program has printed.');
     return null;
   }
-  const buffer = await response.arrayBuffer();
-  const length = new DataView(buffer).getUint32(0, true);
-  const data = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
-  const arrays = new Uint8Array(buffer, 4 + length);
-  const read = (entry) => Packing.read(arrays, entry);
-  data.meshes = data.meshes.map(({ v, i }) => ({ v: read(v), i: Uint32Array.from(read(i)) }));
+  const { data, mesh } = unpack(await response.arrayBuffer());
+  data.meshes = data.meshes.map(mesh);
   return data;
 })();
 if (!Data) return;

@@ -1,7 +1,7 @@
 // Handles at the tool centre points: the ball is dragged in the plane of the screen, an arrow along its axis of the world.
 const Drag = (() => {
-  const { stage } = Scene;
-  if (!Jog.isOn || !stage.works) return { handles: () => [] };
+  const { stage, pixels, ray } = Scene;
+  if (!Jog.isOn || !stage.works) return { handles: () => [], enable: () => {} };
   const { camera, canvas } = stage, box = canvas.parentElement;
   const AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], COLORS = ['#d8402f', '#2f9e44', '#2b6fd6'];
   const LENGTH = 0.09, REACH_PX = 13; // length as a share of the distance of the camera
@@ -24,17 +24,12 @@ const Drag = (() => {
 
   function place(instant) {
     groups.forEach((group, i) => {
-      group.visible = instant.robots[i].isKnown;
+      group.visible = isEnabled && instant.robots[i].isKnown;
       group.position.set(...instant.robots[i].tcp);
     });
   }
   stage.onRender(() => groups.forEach((group) => group.scale.setScalar(LENGTH * camera.position.distanceTo(group.position))));
 
-  // Pixels of a point in the canvas.
-  function pixels(point) {
-    const p = point.clone().project(camera), { width, height } = canvas.getBoundingClientRect();
-    return p.z > 1 ? null : [((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height];
-  }
   const tip = (group, axis) => group.position.clone().addScaledVector(vector(AXES[axis]), group.scale.x);
 
   // The handle at a place of the canvas: a robot, and an axis or null for the ball.
@@ -58,12 +53,6 @@ const Drag = (() => {
     return best;
   }
 
-  function ray(x, y) {
-    const { width, height } = canvas.getBoundingClientRect();
-    const through = new THREE.Vector3((2 * x) / width - 1, 1 - (2 * y) / height, 0.5).unproject(camera);
-    return { origin: camera.position.clone(), along: through.sub(camera.position).normalize() };
-  }
-
   // The point of the plane of the screen through `at`, or of the axis through it, that is under the pointer.
   function under(at, axis, x, y) {
     const { origin, along } = ray(x, y), between = at.clone().sub(origin);
@@ -76,11 +65,17 @@ const Drag = (() => {
     return at.clone().addScaledVector(direction, (cosine * between.dot(along) - between.dot(direction)) / sine);
   }
 
-  let held = null;
+  let held = null, isEnabled = true;
+  // While points are drawn, handles are neither shown nor moved.
+  function enable(on) {
+    isEnabled = on;
+    groups.forEach((group) => { group.visible = on; });
+    stage.request();
+  }
   const place_ = ({ clientX, clientY }) => { const { left, top } = canvas.getBoundingClientRect(); return [clientX - left, clientY - top]; };
   // Before the camera's controls, which listen at the canvas.
   box.addEventListener('pointerdown', (event) => {
-    const [x, y] = place_(event), found = event.button === 0 && hit(x, y), tcp = found && Jog.tcp(found.robot);
+    const [x, y] = place_(event), found = isEnabled && event.button === 0 && hit(x, y), tcp = found && Jog.tcp(found.robot);
     if (!tcp) return;
     event.stopPropagation();
     event.preventDefault();
@@ -91,7 +86,7 @@ const Drag = (() => {
   }, { capture: true });
   box.addEventListener('pointermove', (event) => {
     const [x, y] = place_(event);
-    if (!held) { box.classList.toggle('grab', Boolean(hit(x, y))); return; }
+    if (!held) { box.classList.toggle('grab', isEnabled && Boolean(hit(x, y))); return; }
     event.stopPropagation();
     const to = held.start.clone().add(under(held.start, held.axis, x, y)).sub(held.from);
     Jog.moveTcp(held.robot, [to.x, to.y, to.z], held.rotation);
@@ -102,5 +97,5 @@ const Drag = (() => {
 
   // Where the handles are in the canvas, for tests.
   const handles = () => groups.map((group) => ({ ball: pixels(group.position), tips: AXES.map((_, axis) => pixels(tip(group, axis))) }));
-  return { place, handles };
+  return { place, handles, enable };
 })();

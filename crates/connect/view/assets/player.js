@@ -95,7 +95,7 @@
   document.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const control = event.target.closest('select, input, button'), key = event.key.toLowerCase();
-    if (control && control.matches('input[type="number"], select')) return;
+    if (control && control.matches('input[type="number"], input[type="text"], select')) return;
     const jump = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     const press = { f: 'fit', 1: 'look-top', 2: 'look-front', 3: 'look-side', '+': 'closer', '-': 'farther', d: 'theme', l: 'now', ...(Jog.isOn ? { h: 'home' } : {}) }[key];
     if (press) byId(press).click();
@@ -128,11 +128,13 @@
         })),
         regions: regions.map(({ pose, ...region }) => ({ ...region, position_m: pose.slice(9) })),
         objects: shown.objects.map(({ name, pose }) => ({ name, position_m: pose.slice(9) })),
-        slots: frame.slots, events: Tables.events(),
+        slots: frame.slots, events: Tables.events(), drawing: Draw.state(),
         frames_kept: History.count(), pictures: Scene.stage.rendered(), pictures_per_s: rate, clock_s: performance.now() / 1000, pixel_ratio: Scene.stage.works ? Scene.stage.pixelRatio() : null, measured_in_s: frame.measured_in_s,
       };
     },
     handles: Drag.handles,
+    // Where a point of the world is in the canvas.
+    pixels: (point) => Scene.pixels(new THREE.Vector3(...point)),
   };
   const pair = (p) => p && { a: p.a, b: p.b, distance_m: p.distance_m, points: p.points_m };
   Link.connect();

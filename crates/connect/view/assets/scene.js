@@ -34,6 +34,19 @@ const Scene = (() => {
     stage.request();
   }
 
+  // Pixels of a point of the world in the canvas; null behind the camera.
+  function pixels(point) {
+    const p = point.clone().project(stage.camera), { width, height } = stage.canvas.getBoundingClientRect();
+    return p.z > 1 ? null : [((p.x + 1) / 2) * width, ((1 - p.y) / 2) * height];
+  }
+
+  // The ray from the eye through a place of the canvas.
+  function ray(x, y) {
+    const { camera, canvas } = stage, { width, height } = canvas.getBoundingClientRect();
+    const through = new THREE.Vector3((2 * x) / width - 1, 1 - (2 * y) / height, 0.5).unproject(camera);
+    return { origin: camera.position.clone(), along: through.sub(camera.position).normalize() };
+  }
+
   const views = { 'look-top': [0, 0.001, -1], 'look-front': [0, 1, -0.05], 'look-side': [-1, 0, -0.05] };
   for (const [id, along] of Object.entries(views)) byId(id).addEventListener('click', () => stage.look(along));
   byId('fit').addEventListener('click', stage.fit);
@@ -41,5 +54,5 @@ const Scene = (() => {
   byId('farther').addEventListener('click', () => zoom(1.25));
   byId('show-lines').addEventListener('change', ({ target }) => { showsLines = target.checked; if (last) show(last); });
 
-  return { stage, show };
+  return { stage, show, pixels, ray };
 })();

@@ -20,18 +20,18 @@ use elbowroom_view::{Server, ServerSettings, StatusFeed};
 use serde_json::{Value, json};
 
 /// Largest difference between page and engine, m.
-const AGREED_M: f64 = 1e-6;
+pub const AGREED_M: f64 = 1e-6;
 
 /// Condition that is true at the start of the cell.
 const AT_START: &str = "s.robots.every((r, i) => r.q.every((q, k) => Math.abs(q - [[110, 30, 40, 0, 50, 0], [-60, 30]][i][k] * Math.PI / 180) < 1e-9)) && !s.message";
 
 /// Settings for any free port. With the default limits, as a browser on a busy machine is slow.
-fn settings() -> ServerSettings {
+pub fn settings() -> ServerSettings {
     ServerSettings::at("127.0.0.1:0").unwrap()
 }
 
 /// Finds the browser, and the Python that drives it.
-fn tools() -> Option<(PathBuf, PathBuf)> {
+pub fn tools() -> Option<(PathBuf, PathBuf)> {
     let named = |name: &str| std::env::var_os(name).map(PathBuf::from);
     let tools = named("ELBOWROOM_CHROMIUM").zip(named("ELBOWROOM_PLAYWRIGHT"));
     if tools.is_none() {
@@ -41,7 +41,7 @@ fn tools() -> Option<(PathBuf, PathBuf)> {
 }
 
 /// Opens the page, performs steps, and returns the observation of each.
-fn visit(url: &str, options: &Value, steps: &[Value]) -> Option<Vec<Value>> {
+pub fn visit(url: &str, options: &Value, steps: &[Value]) -> Option<Vec<Value>> {
     let mut call = options.clone();
     call["steps"] = json!(steps);
     let seen = drive(url, &call)?;
@@ -78,7 +78,7 @@ fn which(program: &Path) -> PathBuf {
 }
 
 /// Returns steps that take pictures, if a folder for them is given.
-fn screenshots(name: &str) -> Vec<Value> {
+pub fn screenshots(name: &str) -> Vec<Value> {
     let Some(folder) = std::env::var_os("ELBOWROOM_SCREENSHOTS").map(PathBuf::from) else { return Vec::new() };
     vec![json!({ "do": "screenshot", "file": folder.join(format!("{name}.png")) })]
 }

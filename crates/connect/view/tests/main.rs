@@ -2,6 +2,7 @@
 
 mod browser;
 mod common;
+mod draw;
 mod feed;
 mod hostile;
 mod jog;

@@ -123,9 +123,14 @@ function createStage(corners, lineCount) {
     return { group, solid, shell, edges, label };
   });
 
-  const shields = Data.shields.map((shield) => {
-    const glassy = new THREE.Mesh(meshOf(shield.mesh), glass(shield.color, 0.3));
+  // A shield as it is drawn: glass.
+  function shieldMesh(surface, color) {
+    const glassy = new THREE.Mesh(surface, glass(color, 0.3));
     glassy.renderOrder = 3;
+    return glassy;
+  }
+  const shields = Data.shields.map((shield) => {
+    const glassy = shieldMesh(meshOf(shield.mesh), shield.color);
     glassy.visible = shield.active;
     setPose(glassy, shield.pose);
     scene.add(glassy);
@@ -357,6 +362,8 @@ function createStage(corners, lineCount) {
   return {
     works: true, show, fit, look, theme, request, overrideColor, camera, canvas, controls, size,
     add: (thing) => scene.add(thing),
+    remove: (thing) => scene.remove(thing),
+    shield: (mesh, color) => shieldMesh(geometry(mesh), color),
     rendered: () => rendered,
     pixelRatio: () => ratio,
     onRender: (f) => { beforeRender = f; },

@@ -10,7 +10,7 @@ use flate2::write::GzEncoder;
 const PAGE: &str = include_str!("../../assets/page.html");
 const STYLE: &str = include_str!("../../assets/view.css");
 /// The scripts in order: each uses scripts before it.
-const SCRIPTS: [&str; 15] = [
+const SCRIPTS: [&str; 17] = [
     shared_assets::DOM,
     shared_assets::PACKING,
     include_str!("../../assets/link.js"),
@@ -24,6 +24,8 @@ const SCRIPTS: [&str; 15] = [
     include_str!("../../assets/tables.js"),
     include_str!("../../assets/jog.js"),
     include_str!("../../assets/drag.js"),
+    include_str!("../../assets/draw_scene.js"),
+    include_str!("../../assets/draw.js"),
     include_str!("../../assets/theme.js"),
     include_str!("../../assets/player.js"),
 ];

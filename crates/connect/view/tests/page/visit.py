@@ -110,6 +110,24 @@ def perform(page, step):
         case "press":
             page.keyboard.press(step["key"])
             return wait_for(page, step["until"]) if "until" in step else state(page)
+        case "click":
+            # A control, or a place of the scene that shows a point of the world.
+            if "at" in step:
+                page.locator(step["at"]).click()
+            else:
+                box = page.locator("#canvas").bounding_box()
+                x, y = page.evaluate("(point) => elbowroom.pixels(point)", step["world"])
+                page.mouse.move(box["x"] + x, box["y"] + y)
+                page.mouse.down()
+                page.mouse.up()
+            return wait_for(page, step["until"]) if "until" in step else state(page)
+        case "choose":
+            page.locator(step["at"]).select_option(step["value"])
+            return state(page)
+        case "fill":
+            page.locator(step["at"]).fill(step["value"])
+            page.keyboard.press("Tab")
+            return state(page)
         case "focus":
             page.locator(step["at"]).focus()
             return None
