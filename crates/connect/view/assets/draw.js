@@ -5,7 +5,7 @@ const Draw = (() => {
   const { stage, ray } = Scene;
   const ids = ['object', 'kind', 'name', 'tool', 'width', 'offset', 'depth', 'flare', 'tolerance', 'radius'];
   const field = Object.fromEntries(ids.map((id) => [id, byId(`draw-${id}`)]));
-  const [place, undo, clear, preview, write] = ['place', 'undo', 'clear', 'preview', 'write'].map((id) => byId(`draw-${id}`));
+  const [place, undo, clear, look, preview, write] = ['place', 'undo', 'clear', 'look', 'preview', 'write'].map((id) => byId(`draw-${id}`));
   const [message, table, count] = ['message', 'table', 'count'].map((id) => byId(`draw-${id}`));
   byId('draw-card').hidden = false;
   let points = [], along = [], isPlacing = false, isBusy = false, report = null, written = false, known = null, asked = 0;
@@ -48,10 +48,23 @@ const Draw = (() => {
     flare_rad: field.flare.value === '' ? null : Number(field.flare.value) * Units.DEGREE, tolerance_m: millimetres('tolerance'),
   });
 
+  // The ball around the chosen object.
+  function ball() {
+    const object = Data.objects.find((o) => o.name === field.object.value), { v } = Data.meshes[object.mesh];
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    v.forEach((x, k) => { low[k % 3] = Math.min(low[k % 3], x); high[k % 3] = Math.max(high[k % 3], x); });
+    const middle = low.map((x, k) => (x + high[k]) / 2);
+    return { middle: Kinematics.apply(object.pose, middle), radius: Math.hypot(...low.map((x, k) => high[k] - x)) / 2 };
+  }
+  function lookAt() {
+    const { middle, radius } = ball();
+    stage.focus(middle, radius);
+  }
+
   function show() {
     const all = points.map((p) => p.point_m), kind = field.kind.value;
     const drill = kind === 'drill' && points.length ? [all[0], all[0].map((x, k) => x + inward()[k] * Math.max(depth(), 0.005))] : null;
-    DrawScene.show({ points: all, along, drill, radius: kind === 'faces_within' ? millimetres('radius') : null });
+    DrawScene.show({ points: all, size: ball().radius * 0.02, along, drill, radius: kind === 'faces_within' ? millimetres('radius') : null });
     const last = all.length ? `, the last at ${all[all.length - 1].map((x) => Units.rounded(1000 * x, 2)).join(', ')} mm` : '';
     count.textContent = `${all.length} of ${needed()}${isLine() ? ' or more' : ''} points${last}`;
     undo.disabled = clear.disabled = !all.length;
@@ -196,10 +209,12 @@ const Draw = (() => {
 
   async function begin() {
     try { await describe(); } catch (error) { say(error.message, 'bad'); return; }
+    if (!known.objects.length) { say('The cell has no object to draw on.', 'bad'); return; }
     field.object.append(...known.objects.map(({ name, kind }) => element('option', { value: name, textContent: `${name} (${kind})` })));
     field.tool.append(element('option', { value: '', textContent: 'none' }), ...known.tools.map((tool) => element('option', { value: tool, textContent: tool })));
     if (known.tools.length) field.tool.value = known.tools[0];
-    field.object.addEventListener('change', () => keep(0));
+    field.object.addEventListener('change', () => { keep(0); if (stage.works) lookAt(); });
+    look.addEventListener('click', lookAt);
     field.kind.addEventListener('change', () => keep(isLine() ? points.length : 1));
     for (const id of ['width', 'offset', 'depth', 'flare', 'tolerance', 'radius', 'tool']) field[id].addEventListener('change', changed);
     field.name.addEventListener('change', () => { changed(); choose(); });
@@ -215,7 +230,7 @@ const Draw = (() => {
       takeBack();
     });
     if (stage.works) listen();
-    else { place.disabled = true; say('Points are placed in the 3-D scene, which needs WebGL.', 'bad'); }
+    else { place.disabled = look.disabled = true; say('Points are placed in the 3-D scene, which needs WebGL.', 'bad'); }
     show();
   }
   begin();

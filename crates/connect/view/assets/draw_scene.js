@@ -1,7 +1,7 @@
 // What is drawn on an object, in the 3-D scene: points, the line along the surface, a drill, a radius, and the shield.
 const DrawScene = (() => {
   const { stage } = Scene;
-  const COLOR = '#e8590c', SHIELD = '#1098ad', SIZE = stage.works ? stage.size * 0.004 : 0;
+  const COLOR = '#e8590c', SHIELD = '#1098ad';
   let shown = [], shield = null;
 
   function put(thing, order) {
@@ -28,12 +28,12 @@ const DrawScene = (() => {
     return new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: COLOR, depthTest: false }));
   }
 
-  // Shows points of the world, a line through points of the surface, the way of a drill, and a radius about the first point.
-  function show({ points, along, drill, radius }) {
+  // Shows points of the world as balls of a size, a line through points of the surface, the way of a drill, and a radius about the first point.
+  function show({ points, size, along, drill, radius }) {
     if (!stage.works) return;
     shown.forEach(drop);
     shown = [];
-    points.forEach((p) => put(ball(p, SIZE, { depthTest: false }), 8));
+    points.forEach((p) => put(ball(p, size, { depthTest: false }), 8));
     if (along.length > 1) put(line(along), 7);
     if (drill) put(line(drill), 7);
     if (radius && points.length) put(ball(points[0], radius, { transparent: true, opacity: 0.25, depthWrite: false }), 4);

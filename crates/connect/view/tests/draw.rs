@@ -367,6 +367,7 @@ fn a_person_draws_a_line_of_five_points_on_a_skull_and_writes_it() {
     };
     let mut steps = vec![
         json!({ "do": "click", "at": "#look-top" }),
+        json!({ "do": "choose", "at": "#draw-object", "value": "ball" }),
         json!({ "do": "choose", "at": "#draw-object", "value": "skull" }),
         json!({ "do": "fill", "at": "#draw-width", "value": "9" }),
         json!({ "do": "fill", "at": "#draw-tolerance", "value": "3" }),
@@ -391,7 +392,7 @@ fn a_person_draws_a_line_of_five_points_on_a_skull_and_writes_it() {
     let points: Vec<[f64; 3]> = serde_json::from_value(written["points_m"].clone()).unwrap();
     for (p, aim) in points.iter().zip(&aims) {
         assert!(
-            Vec3::from(*p).distance(Vec3::from(*aim)) < 2e-3,
+            Vec3::from(*p).distance(Vec3::from(*aim)) < 5e-4,
             "within a pixel or two of what was aimed at: {p:?} {aim:?}"
         );
         assert!(project_point(&skull.shape, &skull.in_world, Vec3::from(*p)).signed_distance.abs() < 1e-9);
@@ -407,4 +408,79 @@ fn a_person_draws_a_line_of_five_points_on_a_skull_and_writes_it() {
     for (p, q) in read.iter().zip(&points) {
         assert!(skull.in_world.transform_point(*p).distance(Vec3::from(*q)) < AGREED_M.min(1e-9));
     }
+}
+
+#[test]
+fn holes_areas_and_radii_are_drawn_too_and_what_cannot_be_is_explained() {
+    if tools().is_none() {
+        return;
+    }
+    let drawn_cell = Drawn::new(browser_settings());
+    let [top, east, west, north] = [(0.0, 0.0), (0.012, 0.0), (-0.012, 0.002), (0.0, 0.013)]
+        .map(|(x, y)| drawn_cell.below("ball", 0.43 + x, 0.3 + y));
+    let is_made = "!s.drawing.busy && s.drawing.report";
+    let steps = vec![
+        json!({ "do": "click", "at": "#look-top" }),
+        json!({ "do": "choose", "at": "#draw-object", "value": "ball" }),
+        // Letters of a name are no keys of the page: d, f, h and 1 would change the view.
+        json!({ "do": "fill", "at": "#draw-name", "value": "" }),
+        json!({ "do": "type", "at": "#draw-name", "value": "hole_fd1" }),
+        json!({ "do": "choose", "at": "#draw-kind", "value": "drill" }),
+        json!({ "do": "fill", "at": "#draw-depth", "value": "6" }),
+        json!({ "do": "fill", "at": "#draw-tolerance", "value": "4" }),
+        json!({ "do": "click", "at": "#draw-place", "until": "s.drawing.placing" }),
+        json!({ "do": "click", "world": east, "until": "s.drawing.points_m.length === 1" }),
+        // A second click moves the only point.
+        json!({ "do": "click", "world": top, "until": "s.drawing.points_m.length === 1 && s.drawing.outward[0][2] > 0.99" }),
+        json!({ "do": "click", "at": "#draw-write", "until": "s.drawing.written" }),
+        json!({ "do": "fill", "at": "#draw-name", "value": "cap" }),
+        json!({ "do": "choose", "at": "#draw-kind", "value": "faces_within" }),
+        json!({ "do": "fill", "at": "#draw-radius", "value": "9" }),
+        json!({ "do": "click", "at": "#draw-write", "until": "s.drawing.written" }),
+        json!({ "do": "fill", "at": "#draw-name", "value": "flap" }),
+        json!({ "do": "fill", "at": "#draw-depth", "value": "" }),
+        json!({ "do": "choose", "at": "#draw-kind", "value": "area" }),
+        json!({ "do": "click", "at": "#draw-clear", "until": "s.drawing.points_m.length === 0" }),
+        json!({ "do": "click", "world": east, "until": "s.drawing.points_m.length === 1" }),
+        json!({ "do": "click", "world": north, "until": "s.drawing.points_m.length === 2" }),
+        json!({ "do": "click", "world": west, "until": "s.drawing.points_m.length === 3 && s.drawing.line_m.length > 3" }),
+        json!({ "do": "click", "at": "#draw-preview", "until": is_made }),
+        // A width that cannot be, and a target that exists.
+        json!({ "do": "fill", "at": "#draw-width", "value": "-3" }),
+        json!({ "do": "click", "at": "#draw-preview", "until": "!s.drawing.busy && s.drawing.message.includes('width')" }),
+        json!({ "do": "fill", "at": "#draw-name", "value": "first" }),
+        json!({ "do": "text", "at": "#draw-message" }),
+        json!({ "do": "click", "at": "#draw-write", "until": "s.drawing.written" }),
+        json!({ "do": "state" }),
+    ];
+    let seen = visit(&drawn_cell.server.url(), &json!({ "expected": ["422 (Unprocessable"] }), &steps).unwrap();
+    let cell = drawn_cell.load();
+    let kinds: Vec<(&str, &ShieldTarget)> = cell
+        .guidance
+        .fixtures
+        .iter()
+        .filter_map(|f| match &f.shield {
+            ShieldSource::Generated { target, .. } => Some((f.name.as_str(), target)),
+            ShieldSource::Mesh(_) => None,
+        })
+        .collect();
+    let ball = &cell.objects[1];
+    let [
+        ("first", ShieldTarget::Area(border)),
+        ("hole_fd1", ShieldTarget::Drill { at, axis }),
+        ("cap", ShieldTarget::FacesWithin { radius_m, .. }),
+    ] = kinds[..]
+    else {
+        panic!("{kinds:?}");
+    };
+    assert_eq!(border.len(), 3);
+    assert!(border.iter().all(|p| project_point(&ball.shape, &Pose::IDENTITY, *p).signed_distance.abs() < 1e-9));
+    // The hole leads to the centre of the ball, along the normal, to its depth.
+    assert!((at.try_normalize().unwrap() + axis.try_normalize().unwrap()).length() < 1e-6, "{at:?} {axis:?}");
+    assert_eq!(fixture(&cell, "hole_fd1").settings().unwrap().depth_m, 0.006);
+    assert_eq!(*radius_m, 0.009);
+    // The dimensions of the fixture that exists were taken over from it.
+    assert_eq!(fixture(&cell, "first").settings().unwrap().width_m, 0.005);
+    assert!(seen[26].as_str().unwrap().contains("its target is replaced"), "{}", seen[26]);
+    assert!(drawn_cell.text().contains("protects = \"ball\"       # stays"));
 }

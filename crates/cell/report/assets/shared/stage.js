@@ -225,6 +225,16 @@ function createStage(corners, lineCount) {
   }
   const fit = () => look(oblique);
 
+  // Brings a ball of the world into view, seen from the same side.
+  function focus(middle, radius) {
+    const towards = camera.getWorldDirection(new THREE.Vector3());
+    controls.target.set(...middle);
+    camera.position.set(...middle).addScaledVector(towards, -radius / Math.sin((camera.fov * Math.PI) / 360));
+    isFitted = false;
+    controls.update();
+    request();
+  }
+
   // A label above a point of the world, moved up or down where it would cover another one; hidden where the point is out of view.
   function put(label, point, placed) {
     const p = point.clone().project(camera);
@@ -360,7 +370,7 @@ function createStage(corners, lineCount) {
   }).observe(holder);
 
   return {
-    works: true, show, fit, look, theme, request, overrideColor, camera, canvas, controls, size,
+    works: true, show, fit, look, focus, theme, request, overrideColor, camera, canvas, controls, size,
     add: (thing) => scene.add(thing),
     remove: (thing) => scene.remove(thing),
     shield: (mesh, color) => shieldMesh(geometry(mesh), color),
