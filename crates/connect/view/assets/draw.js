@@ -74,19 +74,20 @@ const Draw = (() => {
   }
 
   // The drawn target has changed: what was previewed is another one.
-  async function changed() {
+  async function changed(note = '') {
     report = null;
     written = false;
     table.hidden = true;
     DrawScene.showShield(null);
-    say('');
+    say(note);
     const mine = ++asked;
     if (!isLine() || points.length < 2) along = [];
     show();
-    if (!along.length && (!isLine() || points.length < 2)) return;
+    if (!isLine() || points.length < 2) return;
+    if (!(millimetres('width') > 0)) { say('The width of the opening is more than 0.', 'bad'); return; }
     try {
       const closed = field.kind.value === 'area' && points.length > 2;
-      const body = { object: field.object.value, points_m: points.map((p) => p.point_m), closed, width_m: millimetres('width') ?? 0, tolerance_m: millimetres('tolerance') };
+      const body = { object: field.object.value, points_m: points.map((p) => p.point_m), closed, width_m: millimetres('width'), tolerance_m: millimetres('tolerance') };
       const answer = await (await ask('/draw/line', body)).json();
       if (mine !== asked) return;
       along = answer.points_m;
@@ -172,14 +173,14 @@ const Draw = (() => {
     say(`${done.replaces ? 'The target is replaced' : 'The fixture is added'} in ${known.file}.\n${showMade(done)}`, 'good');
   });
 
-  // A fixture of the file has been chosen by its name: its dimensions are shown.
+  // If the name is of a fixture of the file, its dimensions are shown; what is to be said about that.
   function choose() {
     const found = known.fixtures.find((f) => f.name === field.name.value.trim());
-    if (!found || !found.settings) return;
+    if (!found || !found.settings) return '';
     const { width_m, offset_m, depth_m, flare_rad, tolerance_m } = found.settings;
     Object.entries({ width: width_m, offset: offset_m, depth: depth_m, tolerance: tolerance_m }).forEach(([id, metres]) => { field[id].value = Number((1000 * metres).toFixed(6)); });
     field.flare.value = Number((flare_rad / Units.DEGREE).toFixed(6));
-    say(`${found.name} is in the file: its target is replaced.`);
+    return `${found.name} is in the file: its target is replaced.`;
   }
 
   async function describe() {
@@ -216,8 +217,8 @@ const Draw = (() => {
     field.object.addEventListener('change', () => { keep(0); if (stage.works) lookAt(); });
     look.addEventListener('click', lookAt);
     field.kind.addEventListener('change', () => keep(isLine() ? points.length : 1));
-    for (const id of ['width', 'offset', 'depth', 'flare', 'tolerance', 'radius', 'tool']) field[id].addEventListener('change', changed);
-    field.name.addEventListener('change', () => { changed(); choose(); });
+    for (const id of ['width', 'offset', 'depth', 'flare', 'tolerance', 'radius', 'tool']) field[id].addEventListener('change', () => changed());
+    field.name.addEventListener('change', () => changed(choose()));
     place.addEventListener('click', () => setPlacing(!isPlacing));
     undo.addEventListener('click', takeBack);
     clear.addEventListener('click', () => keep(0));

@@ -44,7 +44,7 @@ const DrawScene = (() => {
   function showShield(mesh) {
     if (!stage.works) return;
     if (shield) drop(shield);
-    shield = mesh && stage.shield(mesh, SHIELD);
+    shield = mesh && stage.shaded(mesh, SHIELD);
     if (shield) stage.add(shield);
     stage.request();
   }

@@ -123,19 +123,21 @@ function createStage(corners, lineCount) {
     return { group, solid, shell, edges, label };
   });
 
-  // A shield as it is drawn: glass.
-  function shieldMesh(surface, color) {
-    const glassy = new THREE.Mesh(surface, glass(color, 0.3));
-    glassy.renderOrder = 3;
-    return glassy;
-  }
   const shields = Data.shields.map((shield) => {
-    const glassy = shieldMesh(meshOf(shield.mesh), shield.color);
+    const glassy = new THREE.Mesh(meshOf(shield.mesh), glass(shield.color, 0.3));
+    glassy.renderOrder = 3;
     glassy.visible = shield.active;
     setPose(glassy, shield.pose);
     scene.add(glassy);
     return glassy;
   });
+
+  // A shield of its own, shaded so that its opening is seen; in the world.
+  function shaded(mesh, color) {
+    const solid = new THREE.Mesh(geometry(mesh), lit({ color, transparent: true, opacity: 0.55 }, { roughness: 0.6 }));
+    solid.renderOrder = 3;
+    return solid;
+  }
 
   for (const grid of Data.grids) {
     const lines = new THREE.LineSegments(gridLines(grid.axes), new THREE.LineBasicMaterial({ color: grid.color, transparent: true, opacity: 0.6 }));
@@ -373,7 +375,7 @@ function createStage(corners, lineCount) {
     works: true, show, fit, look, focus, theme, request, overrideColor, camera, canvas, controls, size,
     add: (thing) => scene.add(thing),
     remove: (thing) => scene.remove(thing),
-    shield: (mesh, color) => shieldMesh(geometry(mesh), color),
+    shaded,
     rendered: () => rendered,
     pixelRatio: () => ratio,
     onRender: (f) => { beforeRender = f; },
