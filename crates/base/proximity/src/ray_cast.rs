@@ -21,8 +21,8 @@ pub struct RayHit {
 /// Casts a ray: the first point of a shape's surface along `direction` (of any length), seen from either side.
 ///
 /// A ray that starts inside a solid meets the surface where it leaves. `None` if the ray misses the surface, or if the
-/// input is not finite or the direction has no length. The point is on the surface to a few units in the last place. A ray in the plane of a
-/// triangle does not meet that triangle, but the neighbours at its edges.
+/// input is not finite or the direction has no length. The point is on the surface to a few units in the last place. A ray
+/// in the plane of a triangle does not meet that triangle, but the neighbours at its edges.
 ///
 /// ```
 /// use elbowroom_proximity::{Cylinder, Shape, ray_cast};
@@ -38,13 +38,11 @@ pub fn ray_cast(shape: &Shape, shape_in_world: &Pose, origin: Vec3, direction: V
     }
     let along = shape_in_world.inverse_transform_vector(direction.try_normalize()?);
     let from = shape_in_world.inverse_transform_point(origin);
-    let local = match shape {
-        Shape::Mesh(mesh) => mesh_hit(mesh, from, along)?,
-        _ => {
-            let end = inside(shape, from, along)?.first_end()?;
-            let point = from + along * end.at;
-            RayHit { distance_m: end.at, point, outward: end.outward, triangle: None }
-        }
+    let local = if let Shape::Mesh(mesh) = shape {
+        mesh_hit(mesh, from, along)?
+    } else {
+        let end = inside(shape, from, along)?.first_end()?;
+        RayHit { distance_m: end.at, point: from + along * end.at, outward: end.outward, triangle: None }
     };
     Some(RayHit {
         point: shape_in_world.transform_point(local.point),

@@ -154,14 +154,9 @@ impl Fence {
             let along = (to - from) * (1.0 / length_m);
             walls.push(Wall { from, along, outwards: Point2::new(along.y, -along.x), length_m });
         }
-        for i in 0..count {
-            for j in i + 1..count {
-                let is_next = j == i + 1 || (i == 0 && j == count - 1);
-                if !is_next && polygon::segments_intersect(walls[i].ends(), walls[j].ends()) {
-                    let (i, j) = (number(i), number(j));
-                    return Err(FenceError::Crossing(i.min(j), i.max(j)));
-                }
-            }
+        if let Some((i, j)) = polygon::first_crossing(&corners) {
+            let (i, j) = (number(i), number(j));
+            return Err(FenceError::Crossing(i.min(j), i.max(j)));
         }
         for index in 0..count {
             let (before, wall) = (&walls[(index + count - 1) % count], &walls[index]);

@@ -11,6 +11,7 @@ use elbowroom_scene::{Object, PairEdit, PairRule, PairRules, Selection};
 use elbowroom_shared_control::{Passage, Shield, ShieldError, ShieldSettings, generate_shield, line_on_surface};
 use elbowroom_spatial::{Pose, Vec3};
 
+use crate::area_border::{AROUND, crossing_edges, crossing_text};
 use crate::{Cell, CellFixture, CellOperator, CellRobot, CellTool, FixtureTool, ShieldSource, Units};
 
 impl FixtureTool {
@@ -45,6 +46,9 @@ impl Cell {
     ) -> Result<Vec<Vec3>, Diagnostic> {
         let object = &self.objects[object.0];
         let refused = |what: String| Diagnostic::new(&self.file, None, what);
+        if is_closed && let Some(crossing) = crossing_edges(object, points) {
+            return Err(refused(crossing_text(crossing)).hint(AROUND));
+        }
         let mesh = surface(object, settings, refused)?;
         let local: Vec<Vec3> = points.iter().map(|p| object.in_world.inverse_transform_point(*p)).collect();
         let line = line_on_surface(&mesh, &local, is_closed, settings);

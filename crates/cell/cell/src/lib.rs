@@ -30,6 +30,7 @@
 //! **Invariant.** If a cell file is accepted, every name in its [`Cell`] is resolved and every number is in SI units
 //! and radians; a key that the format does not have is always an error with its line.
 
+mod area_border;
 mod cell;
 mod cell_ik_error;
 pub mod configure;

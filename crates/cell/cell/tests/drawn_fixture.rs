@@ -192,6 +192,10 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         (drawn(on_block(&[[0.0, 0.0, 0.1], [0.0, 0.0, 0.06]])), "leaves the surface"),
         (drawn(DrawnTarget::Drill { at_m: [0.0, 0.0, 0.1], axis: [0.0; 3], depth_m: 0.01 }), "no length"),
         (drawn(DrawnTarget::Drill { at_m: [0.0, 0.0, 0.1], axis: [0.0, 0.0, 1.0], depth_m: 0.01 }), "axis"),
+        (
+            drawn(DrawnTarget::Area(vec![[0.0, 0.0, 0.1], [0.02, 0.02, 0.1], [0.02, 0.0, 0.1], [0.0, 0.03, 0.1]])),
+            "crosses itself: after its points 1 and 3",
+        ),
         (drawn(DrawnTarget::FacesWithin { at_m: [0.0, 0.0, 0.1], radius_m: 0.0 }), "radius"),
     ];
     let folder = Folder::with(CELL);

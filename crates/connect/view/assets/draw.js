@@ -64,7 +64,7 @@ const Draw = (() => {
   function show() {
     const all = points.map((p) => p.point_m), kind = field.kind.value;
     const drill = kind === 'drill' && points.length ? [all[0], all[0].map((x, k) => x + inward()[k] * Math.max(depth(), 0.005))] : null;
-    DrawScene.show({ points: all, size: ball().radius * 0.02, along, drill, radius: kind === 'faces_within' ? millimetres('radius') : null });
+    DrawScene.show({ points: all, size: ball().radius * 0.014, along, drill, radius: kind === 'faces_within' ? millimetres('radius') : null });
     const last = all.length ? `, the last at ${all[all.length - 1].map((x) => Units.rounded(1000 * x, 2)).join(', ')} mm` : '';
     count.textContent = `${all.length} of ${needed()}${isLine() ? ' or more' : ''} points${last}`;
     undo.disabled = clear.disabled = !all.length;
@@ -129,7 +129,13 @@ const Draw = (() => {
     isPlacing = on;
     stage.canvas?.parentElement.classList.toggle('draws', on);
     Drag.enable(!on);
+    isolate();
     show();
+  }
+
+  // While points are placed, nothing hides the object.
+  function isolate() {
+    if (stage.works) stage.isolate(isPlacing ? Data.objects.findIndex((o) => o.name === field.object.value) : null);
   }
 
   const summary = (made) => {
@@ -214,7 +220,7 @@ const Draw = (() => {
     field.object.append(...known.objects.map(({ name, kind }) => element('option', { value: name, textContent: `${name} (${kind})` })));
     field.tool.append(element('option', { value: '', textContent: 'none' }), ...known.tools.map((tool) => element('option', { value: tool, textContent: tool })));
     if (known.tools.length) field.tool.value = known.tools[0];
-    field.object.addEventListener('change', () => { keep(0); if (stage.works) lookAt(); });
+    field.object.addEventListener('change', () => { keep(0); isolate(); if (stage.works) lookAt(); });
     look.addEventListener('click', lookAt);
     field.kind.addEventListener('change', () => keep(isLine() ? points.length : 1));
     for (const id of ['width', 'offset', 'depth', 'flare', 'tolerance', 'radius', 'tool']) field[id].addEventListener('change', () => changed());

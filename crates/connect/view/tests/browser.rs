@@ -20,7 +20,7 @@ use elbowroom_view::{Server, ServerSettings, StatusFeed};
 use serde_json::{Value, json};
 
 /// Largest difference between page and engine, m.
-pub const AGREED_M: f64 = 1e-6;
+const AGREED_M: f64 = 1e-6;
 
 /// Condition that is true at the start of the cell.
 const AT_START: &str = "s.robots.every((r, i) => r.q.every((q, k) => Math.abs(q - [[110, 30, 40, 0, 50, 0], [-60, 30]][i][k] * Math.PI / 180) < 1e-9)) && !s.message";

@@ -3,6 +3,7 @@
 mod browser;
 mod common;
 mod draw;
+mod draw_page;
 mod feed;
 mod hostile;
 mod jog;

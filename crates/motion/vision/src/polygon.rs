@@ -123,6 +123,23 @@ pub fn edges(polygon: &[Point2]) -> impl Iterator<Item = (Point2, Point2)> + '_ 
     polygon.iter().copied().zip(polygon.iter().copied().cycle().skip(1))
 }
 
+/// The first two edges, by the index of their first corner, that have a point in common and are not neighbours; `None` for
+/// a simple polygon.
+///
+/// ```
+/// use elbowroom_vision::{Point2, polygon};
+/// let p = Point2::new;
+/// assert_eq!(polygon::first_crossing(&[p(0.0, 0.0), p(2.0, 0.0), p(2.0, 2.0), p(0.0, 2.0)]), None);
+/// assert_eq!(polygon::first_crossing(&[p(0.0, 0.0), p(2.0, 2.0), p(2.0, 0.0), p(0.0, 2.0)]), Some((0, 2)));
+/// ```
+pub fn first_crossing(corners: &[Point2]) -> Option<(usize, usize)> {
+    let edges: Vec<_> = edges(corners).collect();
+    let last = edges.len().saturating_sub(1);
+    let pairs = (0..edges.len()).flat_map(|i| (i + 2..edges.len()).map(move |j| (i, j)));
+    let mut apart = pairs.filter(|&(i, j)| !(i == 0 && j == last));
+    apart.find(|&(i, j)| segments_intersect(edges[i], edges[j]))
+}
+
 /// Clips a convex polygon to the half-plane `normal · p <= offset` (Sutherland and Hodgman).
 pub fn clip(polygon: &[Point2], normal: Point2, offset: f64, out: &mut Vec<Point2>) {
     out.clear();

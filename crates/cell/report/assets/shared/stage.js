@@ -132,6 +132,8 @@ function createStage(corners, lineCount) {
     return glassy;
   });
 
+  const shieldIsOn = Data.shields.map((shield) => shield.active);
+
   // A shield of its own, shaded so that its opening is seen; in the world.
   function shaded(mesh, color) {
     const solid = new THREE.Mesh(geometry(mesh), lit({ color, transparent: true, opacity: 0.55 }, { roughness: 0.6 }));
@@ -252,18 +254,19 @@ function createStage(corners, lineCount) {
     label.style.transform = `translate(${left}px, ${top}px)`;
   }
 
-  let shown = null;
+  let shown = null, alone = null;
   function placeLabels() {
     if (!shown) return;
     const placed = [];
     lines.forEach(({ label }, i) => {
       const line = shown.lines[i];
-      label.hidden = !line;
-      if (line) put(label, new THREE.Vector3(...line.onA).add(new THREE.Vector3(...line.onB)).multiplyScalar(0.5), placed);
+      label.hidden = !line || alone !== null;
+      if (!label.hidden) put(label, new THREE.Vector3(...line.onA).add(new THREE.Vector3(...line.onB)).multiplyScalar(0.5), placed);
     });
     regions.forEach(({ label }, i) => {
       const p = shown.regions[i].pose;
-      put(label, new THREE.Vector3(p[9], p[10], p[11]), placed);
+      if (alone !== null) label.hidden = true;
+      else put(label, new THREE.Vector3(p[9], p[10], p[11]), placed);
     });
   }
 
@@ -274,6 +277,7 @@ function createStage(corners, lineCount) {
     solid.material.emissive.set(active && inside ? Data.regions[i].color : '#000000');
     edges.visible = active;
     if (shell) { shell.visible = active; shell.material.opacity = inside || warned ? 0.26 : 0.11; }
+    group.visible = alone === null;
     label.textContent = Data.regions[i].name + (state ? ` (${state})` : '');
     label.classList.toggle('off', !active);
   }
@@ -298,18 +302,28 @@ function createStage(corners, lineCount) {
     robots.forEach((solids, i) => {
       const { links, absent, tcp, level } = instant.robots[i];
       solids.forEach(({ mesh, solid }) => {
-        mesh.visible = !absent.includes(solid.link);
+        mesh.visible = alone === null && !absent.includes(solid.link);
         setPose(mesh, Kinematics.multiply(links[solid.link], solid.pose));
       });
-      tcpDots[i].visible = Boolean(tcp);
+      tcpDots[i].visible = alone === null && Boolean(tcp);
       if (tcp) tcpDots[i].position.set(...tcp);
       overrideColor(level ?? 1, tcpDots[i].material.color);
     });
-    lines.forEach((_, i) => showLine(i, instant.lines[i]));
-    objects.forEach((object, i) => setPose(object, instant.objects[i].pose));
+    lines.forEach((_, i) => showLine(i, alone === null ? instant.lines[i] : null));
+    objects.forEach((object, i) => {
+      object.visible = alone === null || alone === i;
+      setPose(object, instant.objects[i].pose);
+    });
     instant.regions.forEach((region, i) => showRegion(i, region));
-    instant.shields?.forEach((isOn, i) => { shields[i].visible = isOn; });
+    instant.shields?.forEach((isOn, i) => { shieldIsOn[i] = isOn; });
+    shields.forEach((shield, i) => { shield.visible = alone === null && shieldIsOn[i]; });
     request();
+  }
+
+  // Shows an object alone, by its index; null shows everything again.
+  function isolate(object) {
+    alone = object;
+    if (shown) show(shown);
   }
 
   // Pixels are larger while pictures follow each other slowly, and as fine as the screen's again when the scene rests.
@@ -372,7 +386,7 @@ function createStage(corners, lineCount) {
   }).observe(holder);
 
   return {
-    works: true, show, fit, look, focus, theme, request, overrideColor, camera, canvas, controls, size,
+    works: true, show, fit, look, focus, isolate, theme, request, overrideColor, camera, canvas, controls, size,
     add: (thing) => scene.add(thing),
     remove: (thing) => scene.remove(thing),
     shaded,

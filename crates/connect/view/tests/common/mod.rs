@@ -1,6 +1,8 @@
 //! A cell, and a client of its server.
 #![allow(dead_code, reason = "every test program uses a part of it")]
 
+pub mod drawn;
+
 use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;

@@ -62,7 +62,7 @@ pub(crate) struct LiveArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   elbowroom view cell.toml                       prints an address to open in a browser
-  elbowroom view cell.toml --draw                also draws targets of virtual fixtures there (docs/view.md)")]
+  elbowroom view cell.toml --draw                draws targets of virtual fixtures there")]
 #[cfg_attr(not(feature = "live"), allow(dead_code))]
 pub(crate) struct ViewArgs {
     /// The cell file
