@@ -143,7 +143,7 @@ impl DrawnTarget {
     fn toml(&self, units: Units) -> String {
         let point = |p: &[f64; 3]| format!("[{}]", p.map(|x| exact_length(units, x)).join(", "));
         // One point per line.
-        let list = |points: &[[f64; 3]]| points.iter().map(|p| format!("\n    {},", point(p))).collect::<String>();
+        let list = |points: &[[f64; 3]]| points.iter().fold(String::new(), |text, p| text + "\n    " + &point(p) + ",");
         match self {
             Self::Line(points) => format!("{{ line = [{}\n] }}", list(points)),
             Self::Area(points) => format!("{{ area = [{}\n] }}", list(points)),

@@ -188,7 +188,7 @@ fn hostile_requests_write_nothing_and_the_server_continues() {
     for (body, expected) in bodies {
         let (status, _) = drawn_cell.post("/draw/write", body);
         // A server that refuses a long body may close before all of it is sent.
-        assert!(status == expected || (expected == 413 && status == 0), "{status} for {:.60}", body);
+        assert!(status == expected || (expected == 413 && status == 0), "{status} for {body:.60}");
     }
     for path in ["/draw/", "/draw/pick/x", "/drawing", "/draw/../cell.toml"] {
         assert!(matches!(drawn_cell.post(path, &right).0, 404 | 405), "{path}");

@@ -23,7 +23,7 @@ use crate::source::{RunningCell, ViewSource};
 use crate::{ServerSettings, ViewError};
 
 /// Longest time of a request in a server where shields are made: fine ones take minutes.
-const SHIELD_TIME: Duration = Duration::from_secs(600);
+const SHIELD_TIME: Duration = Duration::from_mins(10);
 
 /// A cell in a browser, until it is stopped or dropped. It has its own threads; its caller is not async.
 #[derive(Debug)]
@@ -79,7 +79,7 @@ impl Server {
         drawing: Option<Arc<TargetDrawing>>,
     ) -> Result<Self, ViewError> {
         let ServerSettings { endpoint, limits } = settings;
-        let token = Token::random()?;
+        let (token, draws) = (Token::random()?, drawing.is_some());
         let (frame_sender, frames) = watch::channel(SentFrame::default());
         let history = Arc::new(History::default());
         let shared = |hosts: &Hosts| -> Result<Shared, ViewError> {
@@ -87,7 +87,7 @@ impl Server {
                 token: token.clone(),
                 hosts: hosts.clone(),
                 limits,
-                geometry: geometry::packed(&model.cell, source.mode(), drawing.is_some())?.into(),
+                geometry: geometry::packed(&model.cell, source.mode(), draws)?.into(),
                 inbox: inbox.clone(),
                 history: history.clone(),
                 frames,
@@ -96,7 +96,7 @@ impl Server {
             })
         };
         let http = HttpServer::start("view", &endpoint, limits.of_connections(), |_, hosts| {
-            Ok(routes(Arc::new(shared(hosts)?), assets::assets()?, drawing.clone()))
+            Ok(routes(Arc::new(shared(hosts)?), assets::assets()?, drawing))
         })?;
         let (to_engine, kept) = (inbox.clone(), history);
         let engine = std::thread::Builder::new().name("view engine".into()).spawn(move || {

@@ -111,7 +111,7 @@ impl Drawn {
 /// Bytes of an answer, until the server closes.
 fn exchange(server: SocketAddr, request: &[u8]) -> Vec<u8> {
     let mut stream = std::net::TcpStream::connect(server).unwrap();
-    stream.set_read_timeout(Some(std::time::Duration::from_secs(120))).unwrap();
+    stream.set_read_timeout(Some(std::time::Duration::from_mins(2))).unwrap();
     // A server that refuses a request closes before everything is written.
     let _ = stream.write_all(request);
     let mut bytes = Vec::new();
