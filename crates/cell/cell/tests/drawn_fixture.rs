@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::common::sealed;
+use crate::sealed_cell::sealed;
 use elbowroom_cell::shared_control::ShieldTarget;
 use elbowroom_cell::{Cell, DrawnFixture, DrawnTarget, FixtureEditor, MOST_DRAWN_POINTS, ShieldSource};
 use elbowroom_spatial::Vec3;

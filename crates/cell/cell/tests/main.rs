@@ -11,4 +11,5 @@ mod kept_inside;
 mod keys;
 mod planning_scene;
 mod seal;
+mod sealed_cell;
 mod tools;

@@ -1,6 +1,7 @@
 //! A seal covers all inputs of the monitors: every number and word of a cell that its checksum depends on.
 
-use crate::common::{ARM, HEAD, rail, sealed};
+use crate::common::{ARM, HEAD, rail};
+use crate::sealed_cell::sealed;
 use elbowroom_cell::Cell;
 use elbowroom_cell::seal::history;
 
