@@ -305,7 +305,7 @@ fn sensor_line(track: &SensorTrack) -> Line {
 pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     let Some(last) = robot.samples.last() else { return "no samples".into() };
     if robot.finished {
-        return format!("finished at {:.2} s", last_motion_s(robot).unwrap_or(last.t_s));
+        return finished_at(robot);
     }
     let since = robot.ending.stopped_at_s.unwrap_or(last.t_s);
     if robot.ending.outcome == Outcome::Deadlock {
@@ -324,8 +324,17 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     }
 }
 
+/// When a robot finished. A door, a fixture or another robot without a program has nothing to finish.
+pub fn finished_at(robot: &RobotTrack) -> String {
+    let [first, .., last] = &robot.samples[..] else { return "did not move".into() };
+    if robot.samples.iter().all(|s| s.q == first.q) {
+        return "did not move".into();
+    }
+    format!("finished at {:.2} s", last_motion_s(robot).unwrap_or(last.t_s))
+}
+
 /// Time of the last motion of the TCP, s; `None` if it never moved.
-pub fn last_motion_s(robot: &RobotTrack) -> Option<f64> {
+fn last_motion_s(robot: &RobotTrack) -> Option<f64> {
     robot.samples.iter().rfind(|s| s.tcp_speed > STATIONARY_M_S).map(|s| s.t_s)
 }
 

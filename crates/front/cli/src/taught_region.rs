@@ -10,8 +10,8 @@ use elbowroom::monitor::teach::{self as taught, HeightDirection};
 use elbowroom::proximity::Shape;
 use elbowroom::spatial::Vec3;
 
-use crate::args::{TaughtShape, TaughtShapeArgs};
 use crate::output::Failure;
+use crate::taught_shape::{TaughtShape, TaughtShapeArgs};
 
 /// What the taught points determine.
 pub(crate) struct TaughtRegion<'a> {

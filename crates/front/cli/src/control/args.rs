@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use crate::args::TaughtShapeArgs;
 use crate::region::args::Class;
+use crate::taught_shape::TaughtShapeArgs;
 
 /// Commands for a running cell (docs/control.md).
 #[derive(Debug, Subcommand)]
