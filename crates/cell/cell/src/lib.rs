@@ -54,6 +54,7 @@ mod payload;
 mod poses;
 mod program;
 mod query_model;
+mod reach;
 pub mod region_constraint;
 mod region_edits;
 mod region_id;
@@ -71,7 +72,7 @@ mod virtual_robot_start;
 
 pub use cell::{
     Approval, AvoidanceSpec, Cell, CellGrid, CellPairRules, CellRegion, CellRobot, CellTiming, Follow, FrameSources,
-    MapSpec, Monitoring, Units,
+    MapSpec, Monitoring, RegionSolid, Units,
 };
 pub use cell_ik_error::CellIkError;
 pub use elbowroom_access as access;
