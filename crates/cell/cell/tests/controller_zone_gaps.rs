@@ -150,7 +150,7 @@ fn eight_workspaces_go_to_what_stops_first_and_a_region_is_whole_or_missing() {
     let lost = missing(&exported);
     assert_eq!(zones(&exported, ZoneLanguage::Krl), 8);
     assert!(
-        lost.len() == 1 && lost[0].contains("region \"s4\", outputs: needs 1 of 8 workspaces, and 0 are left"),
+        lost.len() == 1 && lost[0].contains("region \"s4\", outputs: it takes a workspace, and none of the 8 is free"),
         "{lost:?}"
     );
     // Six parts of walls, and four left.
@@ -158,7 +158,7 @@ fn eight_workspaces_go_to_what_stops_first_and_a_region_is_whole_or_missing() {
                  gates = [{ from = [1900, -450], to = [1900, 450], top = 1000 }]\nwarning = 200\nguards = [\"tcp\"]\n";
     let exported = export(&format!("{stops}{fence}"), ZoneLanguage::Krl);
     assert_eq!((zones(&exported, ZoneLanguage::Krl), missing(&exported).len()), (4, 1));
-    assert!(missing(&exported)[0].contains("region \"cell\": needs 6 of 8 workspaces, and 4 are left"));
+    assert!(missing(&exported)[0].contains("region \"cell\": it takes 6 workspaces, and 4 of the 8 are free"));
     // RAPID has no such limit.
     assert!(export(&format!("{signals}{stops}{fence}"), ZoneLanguage::Rapid).is_complete());
 }

@@ -277,6 +277,26 @@ fn a_fence_is_a_zone_per_part_of_its_walls() {
     }
 }
 
+/// Angles of a cell file are rounded: a box may be turned by what no one means.
+#[test]
+fn a_turn_of_micrometres_is_enclosed_and_a_larger_one_is_refused() {
+    let text = |turn_deg: f64, more: &str| {
+        let table = format!(
+            "[region.r]\nshape = \"box\"\nbase = [0, 0, 0]\nsize = [1000, 1000, 1000]\nrpy = [0, 0, {turn_deg:?}]\n"
+        );
+        export(&cell("", &format!("{table}{more}warning = 100\nguards = [\"tcp\"]\n")), None, ZoneLanguage::Rapid).text
+    };
+    // 40 micrometres at the corners, on either side of a right angle.
+    for turn_deg in [90.0 + 3.99e-5_f64.to_degrees(), 90.0 - 3.99e-5_f64.to_degrees()] {
+        let line = "WZBoxDef \\Inside, shape, [-500.044,-500.044,-0.044], [500.044,500.044,1000.044];";
+        assert!(text(turn_deg, "").contains(line), "{}", text(turn_deg, ""));
+        let line = "WZBoxDef \\Outside, shape, [-499.956,-499.956,0.044], [499.956,499.956,999.956];";
+        assert!(text(turn_deg, "keep = \"inside\"\n").contains(line), "{}", text(turn_deg, "keep = \"inside\"\n"));
+    }
+    assert!(text(90.0 + 6e-5_f64.to_degrees(), "").contains("it is turned against the axes"));
+    assert!(text(45.0, "").contains("it is turned against the axes"));
+}
+
 #[test]
 fn the_frame_is_the_root_a_fixed_link_or_the_world() {
     let lamp =

@@ -19,12 +19,12 @@ use crate::Cell;
 /// Number of Cartesian workspaces.
 const WORKSPACES: usize = 8;
 
-const NOTES: [&str; 4] = [
+const NOTES: [&str; 3] = [
     "Since KSS 8 the controller watches the flange and, to stop, the wrist as well: it may stop before the tool centre",
     "point is at the border, and a robot that has to stay inside of a workspace needs the flange inside of it, too.",
     "Numbers of workspaces and outputs that the cell uses already have to be changed in this text.",
-    "$OUT[N] is output N of the cell file.",
 ];
+const NOTE_OF_OUTPUTS: &str = "$OUT[N] is output N of the cell file.";
 
 /// The lines of the data files, with the names of the zones.
 pub(super) fn text(cell: &Cell, robot: RobotId, frame: &ZoneFrame, regions: &mut [RegionZones<'_>]) -> String {
@@ -36,7 +36,10 @@ pub(super) fn text(cell: &Cell, robot: RobotId, frame: &ZoneFrame, regions: &mut
             let now: Vec<_> = boxes.extract_if(.., |(zone, _)| zone.stops == stops).collect();
             let left = WORKSPACES - files.count;
             if now.len() > left {
-                let what = format!("needs {} of {WORKSPACES} workspaces, and {left} are left", now.len());
+                let what = match now.len() {
+                    1 => format!("it takes a workspace, and none of the {WORKSPACES} is free"),
+                    count => format!("it takes {count} workspaces, and {left} of the {WORKSPACES} are free"),
+                };
                 let part = if stops { "" } else { "outputs" };
                 zones.miss(part, &what, Some("fewer regions, or a box that encloses several"));
                 continue;
@@ -146,7 +149,9 @@ impl DataFiles {
 
     fn text(&self, head: &[String], missing: &[String]) -> String {
         let mut text = String::new();
-        for line in head.iter().map(String::as_str).chain(NOTES).chain(missing.iter().map(String::as_str)) {
+        let of_outputs = Some(NOTE_OF_OUTPUTS).filter(|_| !self.machine.is_empty());
+        let notes = NOTES.into_iter().chain(of_outputs);
+        for line in head.iter().map(String::as_str).chain(notes).chain(missing.iter().map(String::as_str)) {
             let _ = writeln!(text, "; {line}");
         }
         let sections = [

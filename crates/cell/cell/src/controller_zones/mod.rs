@@ -51,7 +51,8 @@ impl ZoneExport {
 
 /// Writes the regions that guard against a robot as zones for its controller.
 ///
-/// Zones enclose their regions: they are never smaller, and larger by at most 0.01 mm. The warning zone of a box or a
+/// Zones enclose their regions: they are never smaller, and larger by at most 0.01 mm; by 0.1 mm in RAPID if the region is
+/// turned against the axes by 0.05 mm or less, as a right angle in radians with four digits is. The warning zone of a box or a
 /// cylinder has sharp edges, and so is larger there. A plane becomes a box that covers all that the robot reaches of it.
 ///
 /// ```

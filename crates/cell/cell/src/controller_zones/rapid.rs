@@ -15,8 +15,8 @@ use super::zone_frame::ZoneFrame;
 use super::zone_text::{head, missing, title};
 use crate::Cell;
 
-/// How far a solid may be turned against the axes, m at its corners.
-const TURN_M: f64 = 3e-6;
+/// How far a solid may be turned against the axes, m at its corners: a right angle with four digits is, in most cells.
+const TURN_M: f64 = 5e-5;
 /// Longest identifier.
 const LONGEST_NAME: usize = 32;
 
@@ -44,11 +44,13 @@ struct Module {
     stationary: String,
     temporary: String,
     zones: usize,
+    sets_outputs: bool,
 }
 
 impl Module {
     fn add(&mut self, zones: &mut RegionZones<'_>, zone: &Zone, definition: &str) {
         let is_temporary = zones.is_temporary();
+        self.sets_outputs |= zone.output.is_some();
         let (data, switch) = if is_temporary { ("wztemporary", "Temp") } else { ("wzstationary", "Stat") };
         let body = if is_temporary { &mut self.temporary } else { &mut self.stationary };
         let mut line = |text: String| {
@@ -73,32 +75,33 @@ impl Module {
 
     fn text(&self, head: &[String], missing: &[String]) -> String {
         let mut text = "MODULE ElbowroomZones\n".to_owned();
-        let comments = |text: &mut String, lines: &[String]| {
-            for line in lines {
-                let _ = writeln!(text, "    ! {line}");
-            }
-        };
-        comments(&mut text, head);
-        comments(&mut text, &NOTES.map(str::to_owned));
-        comments(&mut text, missing);
+        let notes = [
+            Some(NOTE_OF_OPTION),
+            Some(NOTE_OF_STATIONARY).filter(|_| !self.stationary.is_empty()),
+            Some(NOTE_OF_TEMPORARY).filter(|_| !self.temporary.is_empty()),
+            Some(NOTE_OF_OUTPUTS).filter(|_| self.sets_outputs),
+        ];
+        let (head, missing) = (head.iter().map(String::as_str), missing.iter().map(String::as_str));
+        for line in head.chain(notes.into_iter().flatten()).chain(missing) {
+            let _ = writeln!(text, "    ! {line}");
+        }
         let _ = write!(text, "\n{}", self.variables);
-        let routine = |text: &mut String, name: &str, body: &str| {
+        for (name, body) in [("ElbowroomPowerOn", &self.stationary), ("ElbowroomTemporaryZones", &self.temporary)] {
             if !body.is_empty() {
                 let _ = write!(text, "\n    PROC {name}()\n        VAR shapedata shape;\n{body}    ENDPROC\n");
             }
-        };
-        routine(&mut text, "ElbowroomPowerOn", &self.stationary);
-        routine(&mut text, "ElbowroomTemporaryZones", &self.temporary);
+        }
         text.push_str("ENDMODULE\n");
         text
     }
 }
 
-const NOTES: [&str; 3] = [
-    "Needs the option World Zones. Connect ElbowroomPowerOn with the system event POWER ON, and restart.",
-    "Call ElbowroomTemporaryZones at the start of main: its zones are off until the program enables them (WZEnable).",
-    "doElbowroomN is output N of the cell file: a digital output whose access level is read-only for RAPID.",
-];
+const NOTE_OF_OPTION: &str = "Needs the option World Zones.";
+const NOTE_OF_STATIONARY: &str = "Connect ElbowroomPowerOn with the system event POWER ON, and restart.";
+const NOTE_OF_TEMPORARY: &str =
+    "Call ElbowroomTemporaryZones at the start of main: its zones are off until the program enables them (WZEnable).";
+const NOTE_OF_OUTPUTS: &str =
+    "doElbowroomN is output N of the cell file: a digital output whose access level is read-only for RAPID.";
 
 /// A name that no other zone has: the number makes it unique.
 fn variable(number: usize, region: &str) -> String {
