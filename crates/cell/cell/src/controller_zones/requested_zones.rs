@@ -77,12 +77,11 @@ fn request_solid(zones: &mut RegionZones<'_>, part: &str, solid: ZoneSolid, side
         Side::Inside => region.warning_m,
         Side::Outside => -region.warning_m,
     };
-    match solid.grown(by_m) {
-        Some(solid) => zones.zones.push(Zone { solid, side, stops: false, output: Some(output), part }),
-        None => {
-            zones.miss(&part, "it covers all that is free: its output would always be on", Some("a smaller `warning`"))
-        }
-    }
+    let Some(solid) = solid.grown(by_m) else {
+        zones.miss(&part, "it covers all that is free: its output would always be on", Some("a smaller `warning`"));
+        return;
+    };
+    zones.zones.push(Zone { solid, side, stops: false, output: Some(output), part });
 }
 
 /// Notes the keys of a region that no zone has.
