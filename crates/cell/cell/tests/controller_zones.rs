@@ -128,7 +128,8 @@ fn draw(random: &mut SplitMix, base_rows: [[f64; 3]; 3], language: ZoneLanguage)
             let rows = product(base_rows, flip);
             Solid::Cylinder { base: at, rows, radius: between(random), height: between(random) }
         }
-        (_, 2) => Solid::Plane { origin: at, rows },
+        // A plane may be turned about its normal.
+        (_, 2) => Solid::Plane { origin: at, rows: product(rows, rotation([random.between(-180.0, 180.0), 0.0, 0.0])) },
         _ => Solid::Box { base: at, rows, size: [between(random), between(random), between(random)] },
     };
     let turned = match solid {
@@ -170,40 +171,61 @@ fn points(random: &mut SplitMix, drawn: &Drawn, base: [f64; 3]) -> Vec<[f64; 3]>
     points
 }
 
+/// Compares a region with its zone, read back from the text, at points. Counts the points inside, outside, near the border.
+fn compare(
+    random: &mut SplitMix,
+    language: ZoneLanguage,
+    (at, base_rpy): ([f64; 3], [f64; 3]),
+    (drawn, keys): &(Drawn, String),
+) -> [usize; 3] {
+    let base_rows = rotation([base_rpy[2], base_rpy[1], base_rpy[0]]);
+    let base = format!("base = {{ at = {at:?}, rpy = {base_rpy:?} }}");
+    let tables = format!("[region.r]\n{keys}warning = 100\nguards = [\"tcp\"]\n");
+    let exported = export(&cell(&base, &tables), None, language);
+    let text = &exported.text;
+    assert!(exported.is_complete(), "{tables}\n{text}");
+    let zones = read(&exported, language);
+    assert!(zones.len() == 1 && zones[0].stops && zones[0].is_on && zones[0].output.is_none());
+    let mut counts = [0; 3];
+    for p in points(random, drawn, at) {
+        let distance = drawn.distance(p);
+        let found = zones[0].contains(into_frame(p, at, base_rows));
+        assert!(found || distance > 0.0, "{p:?} is {distance} mm inside, and not in the zone\n{tables}{text}");
+        assert!(!found || distance < BORDER_MM, "{p:?} is {distance} mm off, and in the zone\n{tables}{text}");
+        counts[usize::from(!found)] += 1;
+        counts[2] += usize::from(distance.abs() < 0.05);
+    }
+    counts
+}
+
 #[test]
 fn zones_contain_exactly_what_regions_contain() {
     for language in [ZoneLanguage::Rapid, ZoneLanguage::Krl] {
         let mut random = SplitMix(20);
-        let (mut inside, mut outside, mut near) = (0, 0, 0);
+        let mut sum = [0; 3];
         for _ in 0..80 {
             let (at, base_rpy): ([f64; 3], [f64; 3]) = (random.within(2000.0), random.within(180.0));
             let base_rows = rotation([base_rpy[2], base_rpy[1], base_rpy[0]]);
-            let (drawn, keys) = draw(&mut random, base_rows, language);
-            let base = format!("base = {{ at = {at:?}, rpy = {base_rpy:?} }}");
-            let tables = format!("[region.r]\n{keys}warning = 100\nguards = [\"tcp\"]\n");
-            let exported = export(&cell(&base, &tables), None, language);
-            assert!(exported.is_complete(), "{tables}\n{}", exported.text);
-            let zones = read(&exported, language);
-            assert!(zones.len() == 1 && zones[0].stops && zones[0].is_on && zones[0].output.is_none());
-            for p in points(&mut random, &drawn, at) {
-                let distance = drawn.distance(p);
-                let found = zones[0].contains(into_frame(p, at, base_rows));
-                assert!(
-                    found || distance > 0.0,
-                    "{p:?} is {distance} mm inside, and not in the zone\n{tables}{}",
-                    exported.text
-                );
-                assert!(
-                    !found || distance < BORDER_MM,
-                    "{p:?} is {distance} mm off, and in the zone\n{tables}{}",
-                    exported.text
-                );
-                inside += usize::from(found);
-                outside += usize::from(!found);
-                near += usize::from(distance.abs() < 0.05);
-            }
+            let drawn = draw(&mut random, base_rows, language);
+            let counts = compare(&mut random, language, (at, base_rpy), &drawn);
+            sum = [0, 1, 2].map(|i| sum[i] + counts[i]);
         }
-        assert!(inside > 30_000 && outside > 30_000 && near > 20_000, "{language:?}: {inside} {outside} {near}");
+        assert!(sum[0] > 30_000 && sum[1] > 30_000 && sum[2] > 20_000, "{language:?}: {sum:?}");
+    }
+}
+
+/// Where B is a right angle, A and C turn about one axis, and their sum alone is known.
+#[test]
+fn workspaces_with_a_right_angle_about_y_are_where_their_regions_are() {
+    let mut random = SplitMix(22);
+    for pitch in [90.0, -90.0, 89.999_999_9, -89.999_99, 90.000_001] {
+        for (roll, yaw) in [(0.0, 0.0), (30.0, 20.0), (180.0, -90.0), (-75.0, 179.999_999)] {
+            let rows = rotation([yaw, pitch, roll]);
+            let solid = Solid::Box { base: [800.0, -300.0, 500.0], rows, size: [700.0, 300.0, 1100.0] };
+            let drawn = (Drawn { solid, keeps_inside: false }, solid.keys([roll, pitch, yaw]));
+            let counts = compare(&mut random, ZoneLanguage::Krl, ([0.0; 3], [0.0; 3]), &drawn);
+            assert!(counts.iter().all(|count| *count > 200), "{counts:?}");
+        }
     }
 }
 

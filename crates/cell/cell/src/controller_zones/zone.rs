@@ -1,7 +1,7 @@
 //! A zone as a controller would watch it.
 
 use elbowroom_proximity::Shape;
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 /// Largest reach at which planes become boxes, m.
 const FARTHEST_M: f64 = 1000.0;
@@ -77,11 +77,12 @@ impl ZoneSolid {
 
     /// All of the ball that is below the xy plane of `plane_in_frame`: more of the half-space is out of reach.
     fn below_plane(plane_in_frame: Pose, reach: ReachBall) -> Self {
-        let center = plane_in_frame.inverse_transform_point(reach.center);
+        let plane = Pose::new(along_axes(plane_in_frame.rotation), plane_in_frame.translation);
+        let center = plane.inverse_transform_point(reach.center);
         let depth_m = reach.radius_m + center.z.abs();
         let middle = Vec3::new(center.x, center.y, -0.5 * depth_m);
         Self::Cuboid {
-            in_frame: Pose::new(plane_in_frame.rotation, plane_in_frame.transform_point(middle)),
+            in_frame: Pose::new(plane.rotation, plane.transform_point(middle)),
             half_extents: Vec3::new(reach.radius_m, reach.radius_m, 0.5 * depth_m),
         }
     }
@@ -113,4 +114,13 @@ impl ZoneSolid {
             Self::Cylinder { .. } => "cylinder",
         }
     }
+}
+
+/// The rotation turned about its z axis so that x is as parallel as possible to an axis of the frame: a plane is the same
+/// in any direction, and not all controllers have boxes that are turned.
+fn along_axes(rotation: Rotation) -> Rotation {
+    let z = rotation.z_axis();
+    let most_across = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().min_by(|a, b| a.dot(z).abs().total_cmp(&b.dot(z).abs()));
+    let x = most_across.and_then(|axis| (axis - z * axis.dot(z)).try_normalize());
+    x.and_then(|x| Rotation::from_columns(x, z.cross(x), z)).unwrap_or(rotation)
 }
