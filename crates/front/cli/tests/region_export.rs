@@ -96,7 +96,7 @@ fn the_document_has_the_text_and_what_is_missing() {
     );
     assert_eq!((&regions[1]["name"], regions[1]["zones"].as_array().unwrap().len()), (&"lamp".into(), 0));
     assert!(regions[1]["missing"][0]["reason"].as_str().unwrap().contains("sphere"));
-    assert!(answer.stderr.contains("wrote zones.dat: 1 zones of 1 regions out of 2"), "{}", answer.stderr);
+    assert!(answer.stderr.contains("wrote zones.dat: zones for 1 of 2 regions"), "{}", answer.stderr);
     let quiet = elbowroom(dir.path(), &call[..call.len() - 1]).expect(1);
     assert!(quiet.stdout.is_empty());
 }

@@ -61,9 +61,8 @@ pub(super) fn export(args: &ExportArgs) -> Result<ExitStatus, Failure> {
 }
 
 fn counts(exported: &ZoneExport) -> String {
-    let zones: usize = exported.regions.iter().map(|region| region.zones.len()).sum();
     let written = exported.regions.iter().filter(|region| !region.zones.is_empty()).count();
-    format!("{zones} zones of {written} regions out of {}", exported.regions.len())
+    format!("zones for {written} of {} regions", exported.regions.len())
 }
 
 fn row<'a>(cell: &'a Cell, exported: &'a ExportedRegion) -> Row<'a> {
