@@ -11,7 +11,8 @@ use elbowroom_spatial::Vec3;
 
 use crate::carried_motion::carried;
 use crate::explanation::{collision_text, reason_text};
-use crate::summary::{finished_at, followed, millimetres};
+use crate::last_motion::finished_at;
+use crate::summary::{followed, millimetres};
 
 /// Fraction of the programmed override below which a robot counts as slowed down.
 const SLOWED: f64 = 0.995;

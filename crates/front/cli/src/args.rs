@@ -49,7 +49,7 @@ pub(crate) enum Command {
     /// Report what a camera of a cell sees, picture by picture: obstacles, and the joint-space cells that they block
     #[command(name = "watch")]
     WatchCamera(WatchArgs),
-    /// Edit regions and laws of a sealed cell under an access class, seal it, and show its edit log
+    /// Edit regions and laws by access class, seal a cell, show its edit log; write regions as zones of a controller
     #[command(subcommand)]
     Region(crate::region::args::RegionCommand),
     /// List the example cells, or copy them to a folder to start from
