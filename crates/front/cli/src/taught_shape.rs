@@ -14,8 +14,11 @@ pub(crate) struct TaughtShapeArgs {
     /// Height of box3, in the cell file's unit of length: positive is upwards from the taught corners, negative downwards
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) height: Option<f64>,
+    /// Keep robots inside of the shape instead of out of it
+    #[arg(long)]
+    pub(crate) inside: bool,
     /// Thickness of the warning zone, in the cell file's unit of length
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) warning: f64,
 }
 
