@@ -44,6 +44,7 @@ struct FailingCells {
     energy_made: usize,
     cooperating: usize,
     tilted: usize,
+    off_entry: usize,
     any: usize,
 }
 
@@ -64,6 +65,7 @@ impl FailingCells {
             )
         });
         self.tilted += has(|f| matches!(f, Finding::Tilted { .. }));
+        self.off_entry += has(|f| matches!(f, Finding::OffEntry { .. }));
         self.any += usize::from(!findings.is_empty());
     }
 }
@@ -100,7 +102,7 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} off their entry",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
@@ -112,11 +114,12 @@ impl Summary {
             self.failing.too_near,
             self.failing.energy_made,
             self.failing.cooperating,
-            self.failing.tilted
+            self.failing.tilted,
+            self.failing.off_entry
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 19] {
+    fn rows(&self) -> [(&'static str, String); 20] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -136,6 +139,7 @@ impl Summary {
             ("energy made", self.failing.energy_made.to_string()),
             ("cooperating wrongly", self.failing.cooperating.to_string()),
             ("tilted", self.failing.tilted.to_string()),
+            ("off their entry", self.failing.off_entry.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
@@ -233,6 +237,12 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
         ),
         Finding::EnergyMade { robot: r, t_s, energy_j } => {
             format!("the forces of robot {} made {:.6} J until {t_s:.4} s", robot(r), -energy_j)
+        }
+        Finding::OffEntry { robot: r, t_s, off_m } => {
+            format!(
+                "the shaft of robot {} was {off_m:.9} m off its point of entry or its depth at {t_s:.4} s",
+                robot(r)
+            )
         }
         Finding::NotHeld { robot: r, t_s, by_m } => {
             format!("the work-piece moved by {by_m:.9} m in the hand of robot {} at {t_s:.4} s", robot(r))
