@@ -14,6 +14,8 @@ use crate::{LinearConstraint, NavigatorError, NavigatorSettings, ProtectedSurfac
 
 /// Most distance queries per step and surface in the proof of a step that is longer than the gap.
 const PROOF_STEPS: usize = 32;
+/// Relative rounding of an angle.
+const ROUNDING: f64 = 1e-6;
 /// How often a step that turns the tool about its point of entry, and is not proven, is halved.
 const PIVOT_HALVINGS: usize = 5;
 /// Distance below which the line between two nearest points has no usable direction, metres.
@@ -409,11 +411,12 @@ impl SurfaceNavigator {
             let rotation = (turn * here.rotation).renormalized();
             // On the way from one orientation with the shaft at the point to another, it may leave the point.
             let end = center.map_or(Pose::new(rotation, here.translation), |center| center.turned(&here, rotation));
-            if center.is_none() || (end.rotation * here.rotation.inverse()).angle() <= most {
+            let whole = if center.is_some() { (end.rotation * here.rotation.inverse()).angle() } else { turned };
+            if whole <= most * (1.0 + ROUNDING) {
                 self.tool_in_world = end;
                 return;
             }
-            turned *= 0.5;
+            turned *= most / whole;
         }
     }
 }
