@@ -226,10 +226,10 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
                 region(g)
             )
         }
-        Finding::SilentDeadlock { robots } => {
-            let names: Vec<&str> = robots.iter().map(robot).collect();
-            format!("robots {} wait for one another for ever, and the run does not report it", names.join(", "))
-        }
+        Finding::SilentDeadlock { robots } => format!(
+            "robots {} wait for one another for ever, and the run does not report it",
+            robots.iter().map(robot).collect::<Vec<_>>().join(", ")
+        ),
         Finding::TooNear { robot: r, object, t_s, distance_m, least_m } => format!(
             "guided robot {} was {distance_m:.6} m from {} at {t_s:.4} s, at least {least_m:.6} m are promised",
             robot(r),
@@ -239,10 +239,7 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
             format!("the forces of robot {} made {:.6} J until {t_s:.4} s", robot(r), -energy_j)
         }
         Finding::OffEntry { robot: r, t_s, off_m } => {
-            format!(
-                "the shaft of robot {} was {off_m:.9} m off its point of entry or its depth at {t_s:.4} s",
-                robot(r)
-            )
+            format!("the shaft of robot {} was {off_m:.9} m off its point of entry at {t_s:.4} s", robot(r))
         }
         Finding::NotHeld { robot: r, t_s, by_m } => {
             format!("the work-piece moved by {by_m:.9} m in the hand of robot {} at {t_s:.4} s", robot(r))

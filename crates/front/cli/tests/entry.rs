@@ -39,9 +39,9 @@ fn write(dir: &Path, cell: &str, hand: impl Fn(f64) -> ([f64; 3], f64), seconds:
     std::fs::write(dir.join("hand.csv"), text).unwrap();
 }
 
-/// Aside, then twisted, then out of the port.
+/// Aside, then twisted, then back and out of the port.
 fn aside_and_out(t_s: f64) -> ([f64; 3], f64) {
-    let aside = 60.0 * (t_s - 0.5).clamp(0.0, 1.0);
+    let aside = 60.0 * ((t_s - 0.5).clamp(0.0, 1.0) - (t_s - 2.5).clamp(0.0, 1.0));
     let out = 100.0 * (t_s - 3.5).clamp(0.0, 2.0);
     ([924.0, aside, 1165.0 + out], (t_s - 1.5).clamp(0.0, 1.0))
 }
@@ -88,7 +88,7 @@ fn a_tool_that_starts_beside_the_point_turns_there_first_and_says_so() {
     write(dir.path(), &cell, aside_and_out, 2.0);
     let output = elbowroom(dir.path(), &["run", "cell.toml", "--out", "out"]).expect(0);
     assert!(output.stderr.contains("the shaft starts 10 mm from the point of \"port\""), "{}", output.stderr);
-    assert!(output.stderr.contains("cell.toml:11"), "{}", output.stderr);
+    assert!(output.stderr.contains("cell.toml:10"), "{}", output.stderr);
     let first: Vec<String> = events(dir.path()).into_iter().take(2).collect();
     assert_eq!(first, [" entry", " leave"]);
     let shafts = shafts(dir.path(), [0.924, 0.01, 1.225]);
@@ -101,8 +101,11 @@ fn an_obstacle_or_a_joint_stops_the_tool_at_the_point_and_is_named() {
     let dir = tempfile::tempdir().unwrap();
     // An open surface, which the tool cannot glide along, beside the shaft above the point.
     let wall = "[object.wall]\nshape = \"mesh\"\nmesh = \"wall.obj\"\nat = [924, -40, 1250]\n";
-    std::fs::write(dir.path().join("wall.obj"), "v -1 0 0\nv 1 0 0\nv 1 0 0.1\nv -1 0 0.1\nf 1 2 3\nf 1 3 4\n")
-        .unwrap();
+    std::fs::write(
+        dir.path().join("wall.obj"),
+        "v -0.03 0 0\nv 0.03 0 0\nv 0.03 0 0.1\nv -0.03 0 0.1\nf 1 2 3\nf 1 3 4\n",
+    )
+    .unwrap();
     let hand = |t_s: f64| ([924.0, 200.0 * t_s.min(1.0), 1165.0], 0.0);
     write(dir.path(), &format!("{CELL}{wall}"), hand, 3.0);
     elbowroom(dir.path(), &["run", "cell.toml", "--out", "out"]).expect(0);
