@@ -117,9 +117,9 @@ impl RemoteCenter {
         self.radius_m.max(TOLERANCE_M)
     }
 
-    /// Whether the shaft is farther from the point than it may be: the tool was placed so.
-    pub(crate) fn is_missed(&self, tool: &Pose) -> bool {
-        self.correction(tool.translation, tool.rotation, self.side(tool)) != Vec3::ZERO
+    /// The angle by which a tool that was placed elsewhere must turn until its shaft is at the point, rad; 0 if it is there.
+    pub(crate) fn missed_rad(&self, tool: &Pose) -> f64 {
+        self.correction(tool.translation, tool.rotation, self.side(tool)).length()
     }
 
     /// 1 if the tip is beyond the point, −1 if it is before it.

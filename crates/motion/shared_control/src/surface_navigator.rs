@@ -16,10 +16,10 @@ use crate::{LinearConstraint, NavigatorError, NavigatorSettings, ProtectedSurfac
 const PROOF_STEPS: usize = 32;
 /// Relative rounding of an angle.
 const ROUNDING: f64 = 1e-6;
+/// Angular deceleration of a tool that turns to its point of entry, rad/s².
+const TURN_BRAKING_RAD_S2: f64 = 5.0;
 /// How often a step that turns the tool about its point of entry, and is not proven, is halved.
 const PIVOT_HALVINGS: usize = 5;
-/// Distance below which the line between two nearest points has no usable direction, metres.
-const TOUCHING_M: f64 = 1e-9;
 
 /// Moves a tool towards a desired pose, step by step, around surfaces that it never enters.
 ///
@@ -264,20 +264,26 @@ impl SurfaceNavigator {
             return Carried { fraction, turned_rad: 0.0, slack_m, limit };
         };
         let start = self.tool_in_world;
-        let is_missed = center.is_missed(&start);
+        let missed_rad = center.missed_rad(&start);
+        let is_missed = missed_rad > 0.0;
         let mut limit = is_missed.then_some(Limit::Entry);
-        let (mut fraction, mut most_rad) = (center.turnable_fraction(&start, travel, turn_rad), turn_rad);
+        // A shaft that is not at the point yet turns there, slow enough to stop, and its tip waits.
+        let slow_rad = (2.0 * TURN_BRAKING_RAD_S2 * missed_rad).sqrt() * (turn_rad / self.settings.turn_rad_s);
+        let (mut fraction, mut most_rad) = if is_missed {
+            (0.0, turn_rad.min(slow_rad))
+        } else {
+            (center.turnable_fraction(&start, travel, turn_rad), turn_rad)
+        };
         for _ in 0..=PIVOT_HALVINGS {
             let motion = center.motion(&start, travel * fraction, most_rad);
             let needed_m = self.needed_m(&motion);
             if needed_m <= slack_m || self.proven_fraction(&motion) >= 1.0 {
                 self.tool_in_world = motion.carried(&start, 1.0);
-                let slack_m = (slack_m - needed_m).max(0.0);
+                let slack_m = if is_missed { 0.0 } else { (slack_m - needed_m).max(0.0) };
                 return Carried { fraction, turned_rad: motion.turn.length(), slack_m, limit };
             }
             limit = limit.or(Some(Limit::Proof));
             fraction *= 0.5;
-            // A shaft that is not at the point yet may come nearer by any angle.
             most_rad *= if is_missed { 0.5 } else { 1.0 };
         }
         Carried { fraction: 0.0, turned_rad: 0.0, slack_m: 0.0, limit: Some(Limit::Entry) }
@@ -337,7 +343,7 @@ impl SurfaceNavigator {
             let add = |near: LocalMinimum| {
                 let distance_m = near.separation.distance;
                 gap_m = gap_m.min(near.separation.lower_bound);
-                let normal = away_from_surface(&near, surface, in_world);
+                let normal = protected.away(&near);
                 let speed = LinearConstraint { normal, least: -settings.approach_speed(distance_m, dt_s) };
                 let way = LinearConstraint { normal, least: settings.gap_m - distance_m };
                 for (set, row) in [(&mut *velocities, speed), (&mut *displacements, way)] {
@@ -431,18 +437,4 @@ pub(crate) fn split_braking(velocity: Vec3, change: Vec3) -> (Vec3, Vec3) {
 /// A share of a speed, 0 to 1; NaN counts as 0.
 fn within_unit(share: f64) -> f64 {
     if share > 0.0 { share.min(1.0) } else { 0.0 }
-}
-
-/// The unit vector along which the distance grows.
-fn away_from_surface(near: &LocalMinimum, surface: &NormalConeHierarchy, surface_in_world: &Pose) -> Vec3 {
-    let apart = near.separation.on_a - near.separation.on_b;
-    if near.separation.distance > TOUCHING_M
-        && let Some(direction) = apart.try_normalize()
-    {
-        return direction;
-    }
-    let mesh = surface.mesh();
-    let [a, b, c] = mesh.triangles()[near.triangle_b as usize].map(|v| mesh.vertices()[v as usize]);
-    let normal = (b - a).cross(c - a).try_normalize().unwrap_or(Vec3::Z);
-    surface_in_world.transform_vector(normal)
 }

@@ -256,7 +256,9 @@ fn a_shaft_elsewhere_turns_to_the_point_before_its_tip_moves() {
         if step.limit == Some(Limit::Entry) {
             assert!(step.tool_in_world.translation.distance(start.translation) < 1e-3, "{k}");
         }
-        assert_eq!(step.limit == Some(Limit::Entry), last > TOLERANCE_M, "{k}: {last} m");
+        // In between, at a micrometre, it may be either.
+        assert!(step.limit == Some(Limit::Entry) || last <= TOLERANCE_M, "{k}: {last} m");
+        assert!(step.limit.is_none() || last > 0.9e-6, "{k}: {last} m");
         last = off;
     }
     assert!(last < TOLERANCE_M && navigator.tool_in_world().translation.distance(hand.translation) < 1e-3);
