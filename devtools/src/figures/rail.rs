@@ -43,6 +43,7 @@ impl Rail {
             volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)],
             regions: vec![ball],
             sources: vec![],
+            grids: vec![],
             laws,
         };
         let config = Configuration::new(config).map_err(|e| e.to_string())?;

@@ -44,6 +44,7 @@ struct FailingCells {
     energy_made: usize,
     cooperating: usize,
     tilted: usize,
+    wrong_cells: usize,
     off_entry: usize,
     any: usize,
 }
@@ -65,6 +66,7 @@ impl FailingCells {
             )
         });
         self.tilted += has(|f| matches!(f, Finding::Tilted { .. }));
+        self.wrong_cells += has(|f| matches!(f, Finding::WrongCell { .. }));
         self.off_entry += has(|f| matches!(f, Finding::OffEntry { .. }));
         self.any += usize::from(!findings.is_empty());
     }
@@ -102,7 +104,7 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} off their entry",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell, {} off their entry",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
@@ -115,11 +117,12 @@ impl Summary {
             self.failing.energy_made,
             self.failing.cooperating,
             self.failing.tilted,
+            self.failing.wrong_cells,
             self.failing.off_entry
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 20] {
+    fn rows(&self) -> [(&'static str, String); 21] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -139,6 +142,7 @@ impl Summary {
             ("energy made", self.failing.energy_made.to_string()),
             ("cooperating wrongly", self.failing.cooperating.to_string()),
             ("tilted", self.failing.tilted.to_string()),
+            ("wrong_cells", self.failing.wrong_cells.to_string()),
             ("off their entry", self.failing.off_entry.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
@@ -253,6 +257,9 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
             "the tool of robot {} was {off_rad:.4} rad off the direction that it keeps within {within_rad} at {t_s:.4} s",
             robot(r)
         ),
+        Finding::WrongCell { robot: r, t_s, number } => {
+            format!("robot {} was not in cell {number} of its grid at {t_s:.4} s", robot(r))
+        }
         Finding::TooHard { robot: r, joint, t_s, deceleration, limit } => format!(
             "robot {}: joint {joint} slowed down with {deceleration:.3} at {t_s:.4} s, its limit is {limit:.3} (rad/s² or m/s²)",
             robot(r)

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
-use elbowroom_monitor::{Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
+use elbowroom_monitor::{Grid, Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
+use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::{ObjectId, Robot, RobotId};
 use elbowroom_scene::{Object, PairRules};
 use elbowroom_spatial::Pose;
@@ -39,8 +40,8 @@ pub struct Cell {
     pub regions: Vec<CellRegion>,
     /// Encoders and pose files that regions follow.
     pub frame_sources: FrameSources,
-    /// The laws of all monitors; joint decelerations are set per robot.
-    pub laws: CellLaws,
+    /// The laws of all monitors, and the grids.
+    pub monitoring: Monitoring,
     /// Cameras in file order, then sources of point clouds.
     pub sensors: Vec<CellSensor>,
     /// Rules of pairs. [`Self::robots`] are as in their models.
@@ -176,6 +177,27 @@ pub struct CellRegion {
     pub follow: Option<Follow>,
     /// Largest plausible motion of that frame, for the monitors.
     pub source_limits: SourceLimits,
+    /// Its solid as the file describes it.
+    pub solid: RegionSolid,
+}
+
+impl CellRegion {
+    /// Its table, as the cell file writes it: `[region.NAME]` or `[fence.NAME]`.
+    pub fn table(&self) -> String {
+        let word = if matches!(self.solid, RegionSolid::Walls(_)) { "fence" } else { "region" };
+        format!("[{word}.{}]", self.region.name)
+    }
+}
+
+/// The solid of a region as the file describes it; for the monitors it is one shape, possibly a mesh.
+#[derive(Debug, Clone)]
+pub enum RegionSolid {
+    /// The shape of the region.
+    Shape,
+    /// Everything outside of this shape, in the frame of the region's shape: `keep = "inside"`.
+    AllBut(Shape),
+    /// The walls of a fence, with their poses in the world.
+    Walls(Vec<(Cuboid, Pose)>),
 }
 
 /// The source that a dynamic region follows.
@@ -198,10 +220,10 @@ pub enum Follow {
     Poses(usize),
 }
 
-/// Laws of a cell.
+/// What the monitors of all robots are set to.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct CellLaws {
-    /// Laws of the monitors, without stopping distance.
+pub struct Monitoring {
+    /// Their laws, without stopping distance: joint decelerations are set per robot.
     pub laws: Laws,
     /// Time from the monitor's answer to the first deceleration, s: `reaction_ms`, or one tick.
     pub reaction_s: f64,
@@ -209,6 +231,19 @@ pub struct CellLaws {
     pub stopping_reaction_s: Option<f64>,
     /// Reaction time (s) of robots in the simulation, from the file; 0 if the file states none.
     pub reaction_delay_s: f64,
+    /// Grids of the working area, in file order.
+    pub grids: Vec<CellGrid>,
+}
+
+/// A grid, for one robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellGrid {
+    /// The robot.
+    pub robot: RobotId,
+    /// Line of its table.
+    pub line: usize,
+    /// Grid of the robot's monitor.
+    pub grid: Grid,
 }
 
 /// Settings of the joint-space map of a robot.

@@ -177,7 +177,7 @@ fn setup(
         regions.push(region);
         region_ids.push(CellRegionId(i));
     }
-    let stopping_distance = cell.laws.stopping_reaction_s.map(|reaction_s| StoppingSettings {
+    let stopping_distance = cell.monitoring.stopping_reaction_s.map(|reaction_s| StoppingSettings {
         reaction_s,
         // A simulated controller stops by itself if an answer is missing for longer.
         period_s: MISSED_ANSWERS * cell.timing.tick_s,
@@ -191,7 +191,8 @@ fn setup(
         volumes,
         regions,
         sources: sources.iter().map(|(s, limits)| SourceSpec { name: source_name(cell, s), limits: *limits }).collect(),
-        laws: elbowroom_monitor::Laws { stopping_distance, ..cell.laws.laws.clone() },
+        grids: cell.monitoring.grids.iter().filter(|g| g.robot == id).map(|g| g.grid.clone()).collect(),
+        laws: elbowroom_monitor::Laws { stopping_distance, ..cell.monitoring.laws.clone() },
     };
     let configuration = Configuration::new(parts).map_err(|e| config_error(cell, robot, &e))?;
     Ok(MonitorSetup {
@@ -222,7 +223,14 @@ fn config_error(cell: &Cell, robot: &CellRobot, e: &ConfigError) -> Diagnostic {
         ConfigError::Region { region, .. } | ConfigError::DuplicateRegion(region) | ConfigError::NoArbiter(region) => {
             cell.regions.iter().find(|r| r.region.name == *region).map_or(robot.line, |r| r.line)
         }
+        ConfigError::Grid { grid, .. } => {
+            cell.monitoring.grids.iter().find(|g| g.grid.name == *grid).map_or(robot.line, |g| g.line)
+        }
         _ => robot.line,
     };
-    Diagnostic::new(&cell.file, line, e)
+    let error = Diagnostic::new(&cell.file, line, e);
+    match e {
+        ConfigError::Grid { .. } => error.hint("another `output`, fewer `cells`, or a smaller `hysteresis`"),
+        _ => error,
+    }
 }

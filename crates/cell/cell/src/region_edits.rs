@@ -244,7 +244,7 @@ pub fn why_not_continued(now: &Cell, next: &Cell) -> Result<Option<String>> {
     let robots = |setups: &[configure::MonitorSetup]| -> Vec<String> {
         setups.iter().map(|s| s.configuration.robot_checksum()).collect()
     };
-    if robots(&before) != robots(&after) || now.laws != next.laws {
+    if robots(&before) != robots(&after) || now.monitoring != next.monitoring {
         return Ok(Some(
             "the robots or laws of the cell file, or a file that it names, have changed since the start".into(),
         ));

@@ -120,7 +120,9 @@ fn regions_that_come_into_range_are_measured_exactly() {
 
 #[test]
 fn the_example_cells_are_valid() {
-    for name in ["figure12", "exchange", "fence", "conveyor", "guided", "inspection", "tool_box", "pallet"] {
+    for name in
+        ["figure12", "exchange", "fence", "conveyor", "full_speed", "guided", "inspection", "tool_box", "pallet"]
+    {
         let file = elbowroom_testkit::folder::examples().join(name).join("cell.toml");
         assert_eq!(Cell::load(file).unwrap().warnings, [], "{name}");
     }

@@ -123,7 +123,12 @@ fn a_fence_is_a_region_with_gates() {
 fn what_is_no_fence_is_refused_with_its_line() {
     for (old, new, line, words) in [
         ("height = 1500\n", "", 1, "height"),
-        ("[[-3000, -1000], [3000, -1000], [3000, 1000], [-3000, 1000]]", "[[0, 0], [1, 1]]", 2, "three or more"),
+        (
+            "[[-3000, -1000], [3000, -1000], [3000, 1000], [-3000, 1000]]",
+            "[[0, 0], [1, 1]]",
+            2,
+            "2 corners, not 3 to 500",
+        ),
         ("[3000, -1000], [3000, 1000]", "[3000, 1000], [3000, -1000]", 2, "cross each other"),
         ("warning = 300", "rpy = [0, 0, 1]", 5, "no key `rpy`"),
         ("warning = 300", "keep = \"inside\"", 5, "no key `keep`"),
@@ -136,6 +141,9 @@ fn what_is_no_fence_is_refused_with_its_line() {
         let e = cell(&FENCE.replace(old, new)).unwrap_err();
         assert!(e.contains(words) && e.contains(&format!("c.toml:{}", head + line)), "{old} → {new}: {e}");
     }
+    let round: Vec<String> = (0..501).map(|i| format!("[{}, {}]", 3000.0 * f64::from(i).cos(), i)).collect();
+    let e = cell(&FENCE.replace("[-3000, -1000], [3000, -1000]", &round.join(", "))).unwrap_err();
+    assert!(e.contains("503 corners, not 3 to 500"), "{e}");
     let e = cell(&format!("{FENCE}[region.cell]\nshape = \"sphere\"\ncentre = [0, 0, 0]\nradius = 1\n")).unwrap_err();
     assert!(e.contains("a fence is a region") && e.contains("another name"), "{e}");
 }

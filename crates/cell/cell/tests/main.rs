@@ -2,7 +2,10 @@
 
 mod cell_units;
 mod common;
+mod controller_zone_gaps;
+mod controller_zones;
 mod errors;
+mod grids;
 mod guarded_volumes;
 mod joint_contacts;
 mod kept_inside;

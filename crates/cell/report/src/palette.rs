@@ -36,5 +36,7 @@ pub const TOOL: &str = "#59636f";
 pub const OBJECT: &str = "#9aa3ad";
 /// Colour of shields of virtual fixtures.
 pub const SHIELD: &str = "#12a5a5";
+/// Colour of the lines of grids.
+pub const GRID: &str = "#7286a0";
 /// Colour of moving objects.
 pub const MOVING: &str = "#8a6fb3";

@@ -1,8 +1,8 @@
 //! Data of the 3-D scene and of its distances for the scripts of the page: models once, joint values per frame.
 
-use elbowroom_cell::{Cell, CellRegion};
+use elbowroom_cell::{Cell, CellGrid, CellRegion};
 use elbowroom_kinematics::{Chain, JointKind};
-use elbowroom_monitor::{Guards, Part, Presence, Volume};
+use elbowroom_monitor::{GridSpace, Guards, Part, Presence, Volume};
 use elbowroom_proximity::{Shape, tessellate::tessellate};
 use elbowroom_robot::{Robot, RobotId};
 use elbowroom_sim::{Recording, RegionTrack};
@@ -37,6 +37,7 @@ pub fn data(scene: &ReportScene, runs: &[(&str, &Recording)]) -> PageData {
         "objects": scene.objects.iter().map(|o| object(o, moves(o), &mut pack)).collect::<Vec<_>>(),
         "regions": regions.iter().enumerate().map(|(i, r)| region(scene, i, &r.into(), &mut pack)).collect::<Vec<_>>(),
         "shields": shields(scene, &mut pack),
+        "grids": grids(runs.first().map_or(&[][..], |(_, rec)| &rec.grids[..])),
         "runs": runs.iter().map(|(label, rec)| run_data::run(scene, label, rec, pack.packer)).collect::<Vec<_>>(),
     });
     let mut json = json;
@@ -56,6 +57,7 @@ pub fn cell_data(cell: &Cell) -> PageData {
         "objects": objects,
         "regions": cell.regions.iter().enumerate().map(|(i, r)| region(&scene, i, &r.into(), &mut pack)).collect::<Vec<_>>(),
         "shields": shields(&scene, &mut pack),
+        "grids": grids(&cell.monitoring.grids),
     });
     json["meshes"] = meshes.entries().into();
     PageData { json, arrays: packer.bytes().to_vec() }
@@ -68,7 +70,7 @@ pub(crate) fn robot_data(model: &Robot, packer: &mut ArrayPacker) -> Value {
     let mut meshes = PageMeshes::default();
     let mut pack = Pack { packer, meshes: &mut meshes, measured: false };
     let robots = scene.robots.iter().map(|r| robot(r, &mut pack)).collect::<Vec<_>>();
-    json!({ "robots": robots, "objects": [], "regions": [], "shields": [], "meshes": meshes.entries() })
+    json!({ "robots": robots, "objects": [], "regions": [], "shields": [], "grids": [], "meshes": meshes.entries() })
 }
 
 struct Pack<'a> {
@@ -226,6 +228,21 @@ fn shields(scene: &ReportScene, pack: &mut Pack<'_>) -> Vec<Value> {
         })
     };
     scene.shields.iter().map(shield).collect()
+}
+
+/// The grids of boxes, each once, as frames and ends with divisions of their axes.
+fn grids(grids: &[CellGrid]) -> Vec<Value> {
+    let is_first = |(i, g): &(usize, &CellGrid)| grids[..*i].iter().all(|other| other.grid.name != g.grid.name);
+    let drawn = |(_, g): (usize, &CellGrid)| match &g.grid.space {
+        GridSpace::Tcp { frame_in_world } => {
+            let axes: Vec<_> = g.grid.axes.iter().map(|a| json!([a.from, a.to, a.count])).collect();
+            Some(json!({
+                "name": g.grid.name, "pose": pose_values(frame_in_world), "axes": axes, "color": palette::GRID,
+            }))
+        }
+        GridSpace::Joints(_) => None,
+    };
+    grids.iter().enumerate().filter(is_first).filter_map(drawn).collect()
 }
 
 /// Indices of the volumes that count for a region with these guards.

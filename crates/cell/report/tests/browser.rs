@@ -54,6 +54,11 @@ rpy = [70, 0, 40]
 shape = "mesh"
 mesh = "wedge.stl"
 at = [1500, -900, 200]
+[grid.area]
+from = [-500, -1500, 0]
+to = [1500, 1500, 1800]
+cells = [4, 6, 2]
+output = 8
 [region.post]
 shape = "cylinder"
 base = [900, 0, 0]

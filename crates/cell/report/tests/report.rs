@@ -72,7 +72,7 @@ fn names_are_text_and_data_is_json() {
 fn plots_use_attributes_of_plotly_alone() {
     const KNOWN: &str = "anchor autorange automargin b cliponaxis color connectgaps dash data domain fill fillcolor \
         hoverinfo hovermode hovertemplate hovertext l layout legend legendgroup line margin marker mode name opacity \
-        orientation r range rangemode scaleanchor scaleratio shapes showgrid showlegend showticklabels size \
+        orientation r range rangemode scaleanchor scaleratio shape shapes showgrid showlegend showticklabels size \
         symbol t text textposition ticktext tickvals time title type width x xaxis y yanchor yaxis yaxis2 yaxis3 \
         x0 x1 xref y0 y1 yref zeroline";
     fn check(value: &Value) {

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use elbowroom_robot::RobotId;
+
 use crate::recording::Recording;
 
 /// Columns that describe the governing point and obstacle.
@@ -11,7 +13,8 @@ const GOVERNING: &str = "part,object,point_x_m,point_y_m,point_z_m";
 /// point_y_m,point_z_m`: one row per robot and tick, ordered by time, then robot.
 ///
 /// `part` is the link, tool or load closest to the governing region; `point_…` is the point of that part closest to the
-/// region; `object` is the obstacle that the robot evades or waits for.
+/// region; `object` is the obstacle that the robot evades or waits for. A column `grid.NAME` per grid of the cell follows: the
+/// number of the cell that the robot occupies, 0 outside, empty for a robot without this grid.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -21,10 +24,15 @@ pub fn write_trace(recording: &Recording, mut out: impl Write) -> io::Result<()>
     for j in 1..=joints {
         write!(out, "q{j},")?;
     }
-    writeln!(out, "tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m,{GOVERNING}")?;
+    write!(out, "tcp_x_m,tcp_y_m,tcp_z_m,tcp_speed_m_s,override,region,distance_m,{GOVERNING}")?;
+    let grids = grid_names(recording);
+    for name in &grids {
+        write!(out, ",grid.{name}")?;
+    }
+    writeln!(out)?;
     let ticks = recording.robots.iter().map(|r| r.samples.len()).max().unwrap_or(0);
     for tick in 0..ticks {
-        for robot in &recording.robots {
+        for (robot, id) in recording.robots.iter().zip((0..).map(RobotId)) {
             let Some(s) = robot.samples.get(tick) else { continue };
             write!(out, "{},{},", s.t_s, robot.name)?;
             for j in 0..joints {
@@ -42,12 +50,31 @@ pub fn write_trace(recording: &Recording, mut out: impl Write) -> io::Result<()>
             let object = robot.governing_obstacle(tick).unwrap_or("");
             write!(out, ",{},{object},", robot.governing_part(s).unwrap_or(""))?;
             match s.governing {
-                Some(g) => writeln!(out, "{},{},{}", g.point.x, g.point.y, g.point.z)?,
-                None => writeln!(out, ",,")?,
+                Some(g) => write!(out, "{},{},{}", g.point.x, g.point.y, g.point.z)?,
+                None => write!(out, ",,")?,
             }
+            for name in &grids {
+                let of_robot = recording.grids.iter().find(|g| g.robot == id && g.grid.name == *name);
+                match of_robot.map(|g| g.grid.number_in(s.outputs)) {
+                    Some(number) => write!(out, ",{number}")?,
+                    None => write!(out, ",")?,
+                }
+            }
+            writeln!(out)?;
         }
     }
     out.flush()
+}
+
+/// The names of the grids, each once, in file order.
+fn grid_names(recording: &Recording) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for grid in &recording.grids {
+        if !names.contains(&&*grid.grid.name) {
+            names.push(&grid.grid.name);
+        }
+    }
+    names
 }
 
 /// Writes `t_s,robot,region,event`.

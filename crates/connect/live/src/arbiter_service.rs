@@ -164,7 +164,7 @@ fn settings(cell: &Cell) -> Option<ArbiterSettings> {
 /// Longest time in which a robot stops from full speed after its controller stops receiving overrides.
 fn stop_time(cell: &Cell, robot: RobotId) -> Micros {
     let braking = cell.robots[robot.0].limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
-    let laws = &cell.laws;
+    let laws = &cell.monitoring;
     Micros::from_seconds(braking + laws.reaction_s + 2.0 * laws.laws.stale_s)
 }
 

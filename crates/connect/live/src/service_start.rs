@@ -266,7 +266,7 @@ fn with_udp(zenoh: &Arc<dyn Network>, address: Option<&str>) -> Result<Arc<dyn N
 /// stopping distances assume that much more reaction time; cells with exchange regions always use stopping distances.
 fn stopping_in_time(mut cell: Cell) -> Cell {
     let has_exchange = cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. }));
-    let laws = &mut cell.laws;
+    let laws = &mut cell.monitoring;
     if laws.stopping_reaction_s.is_none() && has_exchange {
         laws.stopping_reaction_s = Some(laws.reaction_s);
     }

@@ -161,7 +161,7 @@ impl SimulatedController {
         let paths = PlannedPaths::new(cell);
         let once = plan(&paths, robot, 1, &mut Vec::new())?;
         let again = repetition(&paths, robot, &once);
-        let watchdog = Micros::from_seconds(cell.laws.laws.stale_s);
+        let watchdog = Micros::from_seconds(cell.monitoring.laws.stale_s);
         let client = ControllerClient::new(boot_number(), configuration_number(cell)).with_watchdog(watchdog);
         let client = Arc::new(Mutex::new(client));
         let answers = {
@@ -177,7 +177,7 @@ impl SimulatedController {
             program: Arc::new(Mutex::new(GuardedProgram::new(ProgramClock::new(once, at.limits.clone())))),
             again,
             tick_s: cell.timing.tick_s,
-            reaction_s: cell.laws.reaction_delay_s,
+            reaction_s: cell.monitoring.reaction_delay_s,
             carried,
             client,
             joint_states: network.publisher(&keys.joint_states(&at.name), Urgency::RealTime)?,

@@ -205,6 +205,78 @@ fn what_is_not_allowed_is_refused_with_the_reason_and_changes_nothing() {
     assert_eq!(setup.change(INTEGRATOR, "/remove", &json!({ "region": "lasting" })).0, 200);
 }
 
+/// The answer to a request that changes nothing.
+fn ask(setup: &Setup, body: &Value) -> (u16, Value) {
+    let headers = format!("{}Content-Type: application/json\r\n", setup.bearer(OPERATOR));
+    setup.request("POST", "/distance", &headers, &body.to_string())
+}
+
+#[test]
+fn who_teaches_at_a_robot_sees_where_it_is_and_its_distance_from_what_is_taught() {
+    let setup = Setup::new(false);
+    let unheard = setup.regions()["robots"][0].clone();
+    assert!(unheard["heard"] == false && unheard["tcp"].is_null(), "{unheard}");
+    let body = |toml: &str| json!({ "robot": "left", "region": "lamp", "toml": toml });
+    let (status, document) = ask(&setup, &body(TABLE));
+    assert!(status == 200 && document["distance_m"].is_null(), "not heard: {document}");
+    let controller = Controller::start(&setup, "left", 400);
+    eventually("heard", || setup.regions()["robots"][0]["heard"] == true);
+    let before = setup.regions();
+    assert_eq!((before["units"]["length"].as_str(), before["units"]["angle"].as_str()), (Some("mm"), Some("deg")));
+    for frame in ["tcp", "flange"] {
+        let place = &before["robots"][0][frame]["position_m"];
+        assert!((place[2].as_f64().unwrap() - 0.4).abs() < 1e-9, "{frame}: {before}");
+    }
+    // The ball of the robot, 50 mm, and the region's, 100 mm, at 1000 mm.
+    let distance = |toml: &str| ask(&setup, &body(toml)).1["distance_m"].as_f64().unwrap();
+    assert!((distance(TABLE) - 0.45).abs() < 1e-6, "{}", distance(TABLE));
+    controller.q_mm.store(820, SeqCst);
+    eventually("inside", || distance(TABLE) == 0.0 || (distance(TABLE) - 0.03).abs() < 1e-6);
+    // A name that the cell has is compared with the new shape.
+    let (_, document) =
+        ask(&setup, &json!({ "robot": "left", "region": "cart", "toml": TABLE.replace("1000", "1500") }));
+    assert!((document["distance_m"].as_f64().unwrap() - 0.53).abs() < 1e-6, "{document}");
+    for (wrong, status, message) in [
+        (json!({ "robot": "lift", "region": "lamp", "toml": TABLE }), 404, "there is no robot `lift`"),
+        (json!({ "robot": "left", "region": "lamp", "toml": "shape = \"cube\"" }), 400, "line 1: "),
+        (
+            json!({ "robot": "left", "region": "lamp", "toml": "shape = \"mesh\"\nmesh = \"/etc/passwd\"" }),
+            400,
+            "outside of",
+        ),
+        (json!({ "robot": "left", "region": "lamp" }), 422, "not such a request"),
+    ] {
+        let (found, document) = ask(&setup, &wrong);
+        let error = document["error"].as_str().unwrap_or_default();
+        assert!(found == status && error.contains(message), "{wrong}: {found} {document}");
+    }
+    let (status, _) =
+        setup.request("POST", "/distance", "Content-Type: application/json\r\n", &body(TABLE).to_string());
+    assert_eq!(status, 401);
+    let after = setup.regions();
+    assert!(after["regions"] == before["regions"] && after["revision"] == before["revision"], "nothing has changed");
+    assert!(setup.changes().is_empty());
+}
+
+#[test]
+fn a_fence_stays_as_it_is_while_the_cell_runs() {
+    let fence = "[fence.pen]\ncorners = [[-3000, -3000], [3000, -3000], [3000, 3000], [-3000, 3000]]\nheight = 500\n\
+                 life = \"temporary\"\nwarning = 50\n";
+    let setup = Setup(ControlSetup::new(&format!("{CELL}{fence}"), false, ServiceOptions::default()));
+    let before = setup.regions();
+    for (path, body) in [
+        ("/remove", json!({ "region": "pen" })),
+        ("/move", json!({ "region": "pen", "toml": "corners = [[0, 0], [1, 0], [0, 1]]" })),
+    ] {
+        let (status, document) = setup.change(PROGRAMMER, path, &body);
+        let error = document["error"].as_str().unwrap_or_default();
+        assert!(status == 409 && error.contains("region `pen` is a fence"), "{path}: {status} {document}");
+    }
+    assert_eq!(setup.regions(), before);
+    setup.make("/switch", &json!({ "region": "pen", "active": true }));
+    assert!(setup.region("pen").unwrap()["active"] == true);
+}
+
 #[test]
 fn a_node_that_starts_later_has_the_present_regions_before_its_robot_may_move() {
     let setup = Setup::new(true);

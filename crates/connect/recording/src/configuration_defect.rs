@@ -33,6 +33,9 @@ pub enum ConfigurationDefect {
     /// The travel after which a source repeats is not a vector.
     #[error("the travel of a source has three coordinates")]
     Travel,
+    /// The axes of a grid are not complete.
+    #[error("the axes of grid {0} have two ends and a number of divisions each")]
+    Axes(String),
     /// The joints do not form a chain.
     #[error(transparent)]
     Chain(#[from] ChainError),

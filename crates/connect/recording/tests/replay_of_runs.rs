@@ -49,7 +49,9 @@ fn loaded(example: &str) -> Cell {
 
 #[test]
 fn every_example_replays_to_the_bit() {
-    for example in ["conveyor", "exchange", "fence", "figure12", "guided", "inspection", "pallet", "tool_box"] {
+    for example in
+        ["conveyor", "exchange", "fence", "figure12", "full_speed", "guided", "inspection", "pallet", "tool_box"]
+    {
         let cell = loaded(example);
         let found = replayed(&cell, &RunOptions::default());
         assert_eq!(found.differences, 0, "{example}: {:?}", found.robots);

@@ -33,6 +33,9 @@ pub struct RobotStatus {
     pub tcp: Option<PoseStatus>,
     /// Digital outputs, bit i is channel i.
     pub outputs: u64,
+    /// The cell that the robot occupies in each of its grids; 0 is outside.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub grids: BTreeMap<String, u32>,
     /// The point that requests the smallest override, if one limits it.
     pub governing: Option<PointStatus>,
     /// The closest point of the robot to each region near it.
@@ -140,7 +143,7 @@ impl RobotStatus {
 
     /// Makes the status from a sample of a tick, by a monitor of this configuration.
     pub fn of_sample(t_s: f64, configuration: &Configuration, sample: &StatusSample, tcp: Option<&Pose>) -> Self {
-        let regions = configuration.regions();
+        let (regions, grids) = (configuration.regions(), configuration.grids());
         let name = |r: RegionId| regions[r.0].name.clone();
         let of_region = || sample.regions.iter().zip(regions);
         let report = &sample.report;
@@ -156,6 +159,7 @@ impl RobotStatus {
             sequence: 0,
             tcp: tcp.map(PoseStatus::from),
             outputs: report.outputs,
+            grids: grids.iter().map(|g| (g.name.clone(), g.number_in(report.outputs))).collect(),
             governing: report.governing.as_ref().map(point),
             virtual_tcps: sample.virtual_tcps.iter().map(point).collect(),
             regions: of_region().map(|(s, r)| RegionStatus::of(&r.name, s)).collect(),
@@ -216,6 +220,7 @@ mod tests {
             volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)],
             regions: vec![Region::sphere("ball", Vec3::X * 2.0, 0.5).warning(1.0).guards(Guards::TCP)],
             sources: vec![],
+            grids: vec![],
             laws: Laws::default(),
         })?;
         Ok(Monitor::new(configuration, None)?)

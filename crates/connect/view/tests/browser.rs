@@ -261,6 +261,11 @@ base = [0, 0, 0]
 size = [1000, 700, 1200]
 kind = "exchange"
 warning = 300
+[grid.area]
+from = [-500, -1500, 0]
+to = [1500, 1500, 1800]
+cells = [4, 6, 2]
+output = 8
 [region.post]
 shape = "cylinder"
 base = [-1300, -1300, 0]

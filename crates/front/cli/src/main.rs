@@ -35,6 +35,8 @@ mod rules;
 mod run;
 mod simulation;
 mod states;
+mod taught_region;
+mod taught_shape;
 mod teach;
 mod watch;
 

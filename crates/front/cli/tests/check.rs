@@ -64,6 +64,18 @@ fn an_overrun_is_said_before_the_run() {
     assert!(!free.stderr.contains("overrun"), "{}", free.stderr);
 }
 
+/// A fence is a region with a table of its own.
+#[test]
+fn the_remedy_for_a_fence_names_its_table() {
+    let corners = "corners = [[-3000, -2000], [600, -2000], [600, 2000], [-3000, 2000]]\nheight = 3000\nfloor = -1500";
+    let fence = OVERRUN.split("[region.wall]\n").next().unwrap();
+    let rest = OVERRUN.split("[region.wall]\n").nth(1).unwrap();
+    let after = rest.find("\n[").map_or("", |at| &rest[at..]);
+    let cell = cell(&format!("{fence}[fence.wall]\n{corners}\nwarning = 50\n{after}"));
+    let answer = elbowroom(cell.path(), &["check", "cell.toml"]).expect(1);
+    assert!(answer.stdout.contains("in [fence.wall]") && !answer.stdout.contains("region.wall"), "{}", answer.stdout);
+}
+
 #[test]
 fn check_says_whether_entry_is_excluded_and_why() {
     let answer = check(OVERRUN).expect(1).json();

@@ -206,4 +206,129 @@ warning = 100
         let message = refused.stderr;
         assert!(message.contains("robot `rail` is inside region `cart`: its distance is 0 mm"), "{message}");
     }
+
+    /// A dialogue with `control teach`.
+    struct Lesson {
+        process: LiveProcess,
+        said: Box<dyn Iterator<Item = String>>,
+    }
+
+    impl Lesson {
+        fn start(folder: &Path, at: &str, arguments: &[&str]) -> Self {
+            use std::io::{BufRead as _, BufReader};
+            let mut command = command(folder, &["control", "teach", "lamp", "--robot", "rail", "--at", at]);
+            command.args(["--secret", "programmer.secret"]).args(arguments);
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+            let mut process = LiveProcess(command.spawn().expect("elbowroom starts"));
+            let lines = BufReader::new(process.0.stderr.take().unwrap()).lines().map_while(Result::ok);
+            Self { process, said: Box::new(lines) }
+        }
+
+        /// The next line with these words.
+        fn hear(&mut self, words: &str) -> String {
+            self.said.find(|line| line.contains(words)).unwrap_or_else(|| panic!("nobody says: {words}"))
+        }
+
+        fn type_line(&mut self, line: &str) {
+            use std::io::Write as _;
+            writeln!(self.process.0.stdin.as_mut().unwrap(), "{line}").unwrap();
+        }
+
+        /// The number after these words in the next line that has them.
+        fn number(&mut self, words: &str) -> f64 {
+            let line = self.hear(words);
+            let rest = line.split_once(words).unwrap().1.trim_start_matches(['[', ' ']);
+            // Of a place on the rail its height.
+            let last = rest.split_once(']').map_or(rest, |(place, _)| place.rsplit(", ").next().unwrap());
+            last.split(' ').next().unwrap().parse().unwrap_or_else(|_| panic!("no number: {line}"))
+        }
+
+        fn end(mut self) -> (i32, String) {
+            use std::io::Read as _;
+            let mut text = String::new();
+            self.process.0.stdout.take().unwrap().read_to_string(&mut text).unwrap();
+            (self.process.0.wait().unwrap().code().unwrap(), text)
+        }
+    }
+
+    #[test]
+    fn a_region_is_taught_at_a_moving_robot_compared_and_added() {
+        let folder = cell_and_tokens();
+        let folder = folder.path();
+        // 20 mm/s, away from the cart.
+        let program = "[program.rail]\nsteps = [{ move = \"joint\", to = [2000], speed = 2 }]\n";
+        let text = CELL.replace("[region.cart]", &format!("{program}[region.cart]"));
+        let text = text.replace("centre = [0, 0, 1000]", "centre = [0, 900, 1000]");
+        std::fs::write(folder.join("cell.toml"), text).unwrap();
+        let (_process, at) = start(folder, &["--simulate"]);
+        let secret = ["--at", &at, "--secret", "programmer.secret"];
+        let heard = || control(folder, &[&["regions"][..], &secret].concat()).stdout;
+        let began = Instant::now();
+        while heard().contains("not heard") {
+            assert!(began.elapsed() < Duration::from_secs(20), "the simulated controller is not heard");
+        }
+        let mut lesson = Lesson::start(folder, &at, &["--shape", "sphere", "--warning", "20", "--add", "--off"]);
+        lesson.hear("1 of 2: move the TCP of rail to the centre");
+        lesson.type_line("");
+        let centre = lesson.number("the centre at ");
+        lesson.hear("2 of 2: move the TCP of rail to a point on the surface");
+        std::thread::sleep(Duration::from_millis(600));
+        lesson.type_line("");
+        let surface = lesson.number("a point on the surface at ");
+        assert!(surface > centre + 2.0, "{centre} {surface}");
+        lesson.hear("Enter takes the region, r teaches it again");
+        let near = lesson.number("rail is ");
+        std::thread::sleep(Duration::from_millis(3500));
+        lesson.type_line("");
+        let far = lesson.number("rail is ");
+        // The robot's own ball has 50 mm: inside at first, beyond the surface later.
+        assert!(near == 0.0 && far > 5.0, "{near} {far}");
+        let (status, toml) = lesson.end();
+        assert_eq!(status, 0);
+        let table = toml.split_once("[region.lamp]\n").unwrap().1;
+        assert!(toml.contains("add region.lamp") && table.contains("shape = \"sphere\"\n"), "{toml}");
+        let radius: f64 = table.split_once("radius = ").unwrap().1.lines().next().unwrap().parse().unwrap();
+        assert!((radius - (surface - centre)).abs() < 1e-3 && table.contains("life = \"temporary\"\n"), "{table}");
+        assert!(heard().contains("lamp                 forbidden  temporary  off"), "{}", heard());
+        // What is printed is what a cell file takes.
+        let text = std::fs::read_to_string(folder.join("cell.toml")).unwrap() + &format!("[region.lamp]\n{table}");
+        std::fs::write(folder.join("taught.toml"), text).unwrap();
+        assert_eq!(answer(command(folder, &["query", "taught.toml", "--ask", "distance"]).output().unwrap()).status, 0);
+    }
+
+    #[test]
+    fn points_that_make_no_region_are_taught_again_and_nothing_is_added_without_an_end() {
+        let folder = cell_and_tokens();
+        let folder = folder.path();
+        let (_process, at) = start(folder, &["--simulate"]);
+        let secret = ["--at", &at, "--secret", "programmer.secret"];
+        let heard = || control(folder, &[&["regions"][..], &secret].concat()).stdout;
+        while heard().contains("not heard") {}
+        let mut lesson = Lesson::start(folder, &at, &["--shape", "sphere"]);
+        for _ in 0..2 {
+            lesson.hear("1 of 2");
+            lesson.type_line("");
+            lesson.hear("2 of 2: move");
+            lesson.type_line("");
+        }
+        lesson.hear("teach the points again");
+        lesson.type_line("q");
+        lesson.hear("nothing was taught: ended by q");
+        assert_eq!(lesson.end(), (2, String::new()));
+        let teach = |arguments: &[&str]| {
+            let words = [&["teach", "lamp", "--at", &at, "--secret", "operator.secret"][..], arguments].concat();
+            control(folder, &words)
+        };
+        for (arguments, message) in [
+            (&["--robot", "rial", "--shape", "box"][..], "there is no robot `rial`"),
+            (&["--robot", "rail", "--shape", "box3"][..], "Box3 needs --height"),
+            (&["--robot", "rail", "--shape", "box", "--height", "3"][..], "Box needs no --height"),
+            (&["--robot", "rail", "--shape", "box"][..], "the standard input has ended"),
+            (&["--robot", "rail", "--shape", "box", "--off"][..], "--add"),
+        ] {
+            let refused = teach(arguments);
+            assert!(refused.status == 2 && refused.stderr.contains(message), "{arguments:?}: {}", refused.stderr);
+        }
+        assert!(!heard().contains("lamp"));
+    }
 }

@@ -31,6 +31,7 @@ mod query;
 mod query_contacts;
 mod query_pairs;
 mod recordings;
+mod region_export;
 mod roles;
 mod rules;
 mod run;

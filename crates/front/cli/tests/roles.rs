@@ -236,6 +236,38 @@ fn a_programmer_seals_temporary_regions_and_nothing_else() {
     assert!(!dir.path().join("cell.seal.jsonl").exists());
 }
 
+#[test]
+fn a_fence_is_sealed_as_the_region_that_it_is() {
+    let fence = |life: &str| {
+        format!(
+            "[fence.pen]\ncorners = [[-9000, -9000], [9000, -9000], [9000, 9000], [-9000, 9000]]\nheight = 2000\n\
+             life = \"{life}\"\nwarning = 50\n"
+        )
+    };
+    for (life, class) in [("temporary", "programmer"), ("permanent", "integrator")] {
+        let dir = sealed();
+        write(dir.path(), "pen.toml", &fence(life));
+        if life == "permanent" {
+            let refusal = act(dir.path(), "programmer", &["add", "cell.toml", "pen.toml"]).expect(2).stderr;
+            assert!(refusal.contains("`pen`") && refusal.contains("--as integrator"), "{refusal}");
+        }
+        act(dir.path(), class, &["add", "cell.toml", "pen.toml"]).expect(0);
+        let twice = act(dir.path(), class, &["add", "cell.toml", "pen.toml"]).expect(2).stderr;
+        assert!(twice.contains("a region `pen` already"), "{twice}");
+        act(dir.path(), class, &["change", "cell.toml", "pen", "height=2500"]).expect(0);
+        assert!(read(dir.path(), "cell.toml").contains("height = 2500"));
+        // Changed with an editor: the message names it, and the same class may seal it.
+        let lower = read(dir.path(), "cell.toml").replace("height = 2500", "height = 1500");
+        write(dir.path(), "cell.toml", &lower);
+        refused(dir.path(), &["region.pen", "height"]);
+        act(dir.path(), class, &["seal", "cell.toml"]).expect(0);
+        run_in(dir.path(), &["run", "cell.toml"]).expect(0);
+        act(dir.path(), class, &["remove", "cell.toml", "pen"]).expect(0);
+        assert!(!read(dir.path(), "cell.toml").contains("fence"));
+        run_in(dir.path(), &["run", "cell.toml"]).expect(0);
+    }
+}
+
 /// Returns regions that follow an object, a file of poses and an encoder with a file; and an object that no region follows.
 fn carried(life: &str) -> String {
     let region = |name: &str, follow: &str| {
@@ -598,7 +630,7 @@ fn what_is_no_edit_changes_nothing_and_says_why() {
     write(dir.path(), "wrong.toml", "[region.x]\nshape = \"sfere\"\n");
     let cases: &[(&[&str], &str)] = &[
         (&["add", "cell.toml", "post.toml"], "a region `post` already"),
-        (&["add", "cell.toml", "law.toml"], "`monitor` is no region"),
+        (&["add", "cell.toml", "law.toml"], "`monitor` is neither a region nor a fence"),
         (&["add", "cell.toml", "dotted.toml"], "outside of [region.NAME]"),
         (&["add", "cell.toml", "sub.toml"], "a region `post` already"),
         (&["add", "cell.toml", "none.toml"], "holds no region"),

@@ -1,6 +1,6 @@
 //! `elbowroom run`: exit status, JSON, files.
 
-use crate::common::{SWING, elbowroom, examples, keys, swing, with_cell};
+use crate::common::{SWING, elbowroom, examples, keys, solid_swing, swing, with_cell};
 
 #[test]
 fn a_guarded_arm_stops_before_the_region() {
@@ -149,6 +149,79 @@ fn an_error_names_file_and_line_and_a_hint() {
     assert_eq!(answer.stdout, "", "no half document");
     assert!(answer.stderr.contains("cell.toml:10:"), "{}", answer.stderr);
     assert!(answer.stderr.contains("radius"), "{}", answer.stderr);
+}
+
+#[test]
+fn at_full_speed_the_law_of_the_paper_alone_stops_in_a_zone_that_is_thick_enough_and_not_in_a_thin_one() {
+    let text = std::fs::read_to_string(examples().join("full_speed/cell.toml")).unwrap();
+    assert!(!text.contains("[monitor]"));
+    let text = text.replace("../models", &examples().join("models").display().to_string());
+    for (warning, arguments, is_entered) in
+        [(250, &[][..], false), (100, &[][..], true), (250, &["--no-monitor"][..], true)]
+    {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("cell.toml"), text.replace("warning = 250", &format!("warning = {warning}")))
+            .unwrap();
+        let answer = elbowroom(dir.path(), &[&["run", "cell.toml", "--json", "--out", "out"][..], arguments].concat());
+        let json = answer.expect(i32::from(is_entered)).json();
+        assert_eq!(json["regions"][0]["entered"], is_entered, "{warning} {arguments:?}");
+        let trace = std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap();
+        let speeds = trace.lines().skip(1).map(|row| row.split(',').nth(11).unwrap().parse::<f64>().unwrap());
+        assert!(speeds.fold(0.0, f64::max) > 1.8, "as fast as the joints allow");
+    }
+}
+
+/// A door has joints and no program.
+#[test]
+fn what_has_no_program_has_not_finished_but_not_moved() {
+    let dir = swing();
+    let door = "[robot.door]\ndh = [{ a = 800, min = 0, max = 100, speed = 60 }]\nbase = { at = [0, 3000, 0] }\n\
+                links = [{ box = { at = [-400, 0, 1000], size = [800, 40, 2000] } }]\n";
+    let file = dir.path().join("cell.toml");
+    std::fs::write(&file, std::fs::read_to_string(&file).unwrap() + door).unwrap();
+    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--out", "out"]).expect(0);
+    assert!(answer.stdout.contains("door   did not move\n"), "{}", answer.stdout);
+    assert!(!answer.stdout.contains("door   finished") && answer.stdout.contains("arm    "), "{}", answer.stdout);
+    let report = std::fs::read_to_string(dir.path().join("out/report.html")).unwrap();
+    assert!(report.contains("door did not move"));
+}
+
+/// The number of the cell is that of the TCP in the same row, but for the hysteresis of 1 mm.
+#[test]
+fn grids_add_columns_with_the_number_of_the_occupied_cell() {
+    let grids = "[grid.sector]\njoints = [\"joint_1\"]\nfrom = [-90]\nto = [90]\ncells = [9]\noutput = 20\n\
+                 [grid.area]\nfrom = [0, -800, -10]\nto = [800, 800, 10]\ncells = [4, 8, 1]\noutput = 40\n";
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("cell.toml"), format!("{}{grids}", solid_swing())).unwrap();
+    let trace = |arguments: &[&str]| {
+        elbowroom(dir.path(), &[&["run", "cell.toml", "--out", "out"][..], arguments].concat());
+        std::fs::read_to_string(dir.path().join("out/trace.csv")).unwrap()
+    };
+    for arguments in [&[][..], &["--no-monitor"]] {
+        let trace = trace(arguments);
+        assert!(trace.lines().next().unwrap().ends_with(",point_x_m,point_y_m,point_z_m,grid.sector,grid.area"));
+        let mut seen = std::collections::BTreeSet::new();
+        for row in trace.lines().skip(1) {
+            let row: Vec<&str> = row.split(',').collect();
+            let number = |i: usize| row[i].parse::<f64>().unwrap();
+            let place = |x: f64, from: f64, to: f64, count: f64| ((x - from) / (to - from) * count).floor();
+            let near = |x: f64, step: f64| (x / step - (x / step).round()).abs() * step < 2e-3;
+            let (q1, x, y) = (number(2), number(4), number(5));
+            let half_turn = std::f64::consts::FRAC_PI_2;
+            let sector = if q1.abs() > half_turn { 0.0 } else { 1.0 + place(q1, -half_turn, half_turn, 9.0) };
+            if !near(q1 + half_turn, half_turn / 4.5) {
+                assert_eq!(number(row.len() - 2), sector, "{row:?}");
+            }
+            let area = 1.0 + place(x, 0.0, 0.8, 4.0) + 4.0 * place(y, -0.8, 0.8, 8.0);
+            if !near(x, 0.2) && !near(y, 0.2) {
+                assert_eq!(number(row.len() - 1), if (0.0..0.8).contains(&x) { area } else { 0.0 }, "{row:?}");
+            }
+            seen.insert(row[row.len() - 1].to_owned());
+        }
+        assert!(seen.len() > 3, "{seen:?}");
+    }
+    let report = std::fs::read_to_string(dir.path().join("out/report.html")).unwrap();
+    assert!(report.contains("Grids of the working area"));
 }
 
 #[test]

@@ -24,7 +24,8 @@ fn without_arguments_figure_12_runs_and_writes_its_report() {
 fn examples_are_listed_and_copied_and_own_changes_are_kept() {
     let dir = tempfile::tempdir().unwrap();
     let listed = elbowroom(dir.path(), &["example"]).expect(0).stdout;
-    for name in ["conveyor", "crate", "exchange", "fence", "figure12", "joint_map", "pallet", "tool_box"] {
+    for name in ["conveyor", "crate", "exchange", "fence", "figure12", "full_speed", "joint_map", "pallet", "tool_box"]
+    {
         assert!(listed.contains(name), "{listed}");
     }
     assert!(!listed.contains("models"), "no cell: {listed}");

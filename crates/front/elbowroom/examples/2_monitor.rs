@@ -37,6 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         volumes: arm_volumes(&arm, VolumeModel::default()),
         regions: vec![post],
         sources: vec![],
+        grids: vec![],
         laws: Laws { direction_aware: true, stopping_distance: Some(stopping), ..Laws::default() },
         chain: arm.chain,
     })?;

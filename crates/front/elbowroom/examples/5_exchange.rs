@@ -48,6 +48,7 @@ impl Controller {
             volumes: arm_volumes(robot, VolumeModel::default()),
             regions: vec![Region::cuboid_from_corners("pallet", low, high).warning(mm(200.0)).kind(kind)],
             sources: vec![],
+            grids: vec![],
             laws: Laws { direction_aware: true, stopping_distance: Some(stopping), ..Laws::default() },
             chain: robot.chain.clone(),
         })?;

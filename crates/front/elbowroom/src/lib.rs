@@ -51,6 +51,7 @@
 //!         volumes: vec![Volume::tcp(scara.tip(), Vec3::ZERO)],
 //!         regions: vec![column],
 //!         sources: vec![],
+//!         grids: vec![],
 //!         laws: Laws::default(),
 //!         chain: scara,
 //!     })?,

@@ -3,7 +3,7 @@
 use elbowroom_kinematics::Chain;
 use elbowroom_spatial::Pose;
 
-use crate::{Laws, Region, RegionId, RegionKind, SourceSpec, Volume};
+use crate::{Grid, Laws, Region, RegionId, RegionKind, SourceSpec, Volume};
 
 /// The parts of a [`Configuration`]; [`Configuration::new`] validates them.
 #[derive(Debug, Clone)]
@@ -23,6 +23,8 @@ pub struct ConfigurationParts {
     pub sources: Vec<SourceSpec>,
     /// The laws.
     pub laws: Laws,
+    /// The grids whose occupied cell is on digital outputs.
+    pub grids: Vec<Grid>,
 }
 
 /// One robot, its guarded volumes and the regions that apply to it. Valid by construction; [`Configuration::edit`], which
@@ -44,6 +46,7 @@ pub struct Configuration {
     pub(crate) regions: Vec<Region>,
     pub(crate) sources: Vec<SourceSpec>,
     pub(crate) laws: Laws,
+    pub(crate) grids: Vec<Grid>,
 }
 
 /// Why a configuration is invalid.
@@ -73,6 +76,14 @@ pub enum ConfigError {
     Source {
         /// The source.
         source_name: String,
+        /// What is wrong.
+        why: String,
+    },
+    /// A grid is invalid.
+    #[error("grid `{grid}`: {why}")]
+    Grid {
+        /// The grid.
+        grid: String,
         /// What is wrong.
         why: String,
     },
@@ -108,8 +119,8 @@ impl Configuration {
     /// # Errors
     /// [`ConfigError`] names the first invalid part.
     pub fn new(parts: ConfigurationParts) -> Result<Self, ConfigError> {
-        let ConfigurationParts { robot, base_in_world, chain, volumes, regions, sources, laws } = parts;
-        let built = Self { robot, base_in_world, chain, volumes, regions, sources, laws };
+        let ConfigurationParts { robot, base_in_world, chain, volumes, regions, sources, laws, grids } = parts;
+        let built = Self { robot, base_in_world, chain, volumes, regions, sources, laws, grids };
         built.validate()?;
         Ok(built)
     }
@@ -149,6 +160,11 @@ impl Configuration {
         &self.laws
     }
 
+    /// The grids.
+    pub fn grids(&self) -> &[Grid] {
+        &self.grids
+    }
+
     /// The region with this name.
     pub fn region(&self, name: &str) -> Option<RegionId> {
         self.regions.iter().position(|r| r.name == name).map(RegionId)
@@ -166,6 +182,7 @@ impl Configuration {
                 return Err(ConfigError::Source { source_name: source.name.clone(), why });
             }
         }
+        self.grids.iter().enumerate().try_for_each(|(i, g)| self.validate_grid(i, g))?;
         self.validate_laws()
     }
 
@@ -194,6 +211,31 @@ impl Configuration {
             return Err(bad("a half-space cannot be carried by a robot".into()));
         }
         volume.shape.validate().map_err(|e| bad(e.to_string()))
+    }
+
+    /// A grid's outputs are its own: of bits that a region or another grid raises too, nobody could read a number.
+    fn validate_grid(&self, index: usize, grid: &Grid) -> Result<(), ConfigError> {
+        let bad = |why: String| ConfigError::Grid { grid: grid.name.clone(), why };
+        let has_tcp = self.volumes.iter().any(|v| v.part.is_tcp());
+        if let Some(why) = grid.problem(self.chain.dof(), has_tcp) {
+            return Err(bad(why));
+        }
+        let channels = grid.channels();
+        let of_region = |r: &&Region| r.output.into_iter().chain(r.warning_output).any(|c| channels.contains(&c));
+        if let Some(region) = self.regions.iter().find(of_region) {
+            let name = &region.name;
+            return Err(bad(format!(
+                "region `{name}` has one of its outputs {} to {}",
+                channels.start,
+                channels.end - 1
+            )));
+        }
+        let of_grid = |g: &&Grid| g.channels().start < channels.end && channels.start < g.channels().end;
+        if let Some(other) = self.grids[..index].iter().find(of_grid) {
+            let (name, last) = (&other.name, channels.end - 1);
+            return Err(bad(format!("grid `{name}` has one of its outputs {} to {last}", channels.start)));
+        }
+        Ok(())
     }
 
     fn validate_laws(&self) -> Result<(), ConfigError> {

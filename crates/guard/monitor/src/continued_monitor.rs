@@ -32,7 +32,7 @@ impl Monitor {
     /// # let chain = Chain::new("rail", vec!["base".into(), "carriage".into()], vec![rail])?;
     /// # let configuration = |x: f64| Configuration::new(ConfigurationParts { robot: "rail".into(), chain: chain.clone(),
     /// #     base_in_world: Pose::IDENTITY, volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)], sources: vec![],
-    /// #     regions: vec![Region::sphere("pillar", Vec3::X * x, 0.5).warning(0.4).guards(Guards::TCP)], laws: Laws::default() });
+    /// #     regions: vec![Region::sphere("pillar", Vec3::X * x, 0.5).warning(0.4).guards(Guards::TCP)], grids: vec![], laws: Laws::default() });
     /// let mut former = Monitor::new(configuration(2.0)?, None)?;
     /// assert_eq!(former.tick(&Snapshot::stationary(0.0, &[0.5])).speed_override, 1.0);
     /// // The pillar comes nearer.
@@ -102,6 +102,7 @@ mod tests {
             volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)],
             regions,
             sources: vec![],
+            grids: vec![],
             laws: Laws { override_rate: 2.0, ..Laws::default() },
         };
         Configuration::new(parts).unwrap()

@@ -43,6 +43,7 @@ pub enum NotObeyed {
 /// #     joint_acceleration: vec![5.0] };
 /// # let configuration = Configuration::new(ConfigurationParts { robot: "rail".into(), base_in_world: Pose::IDENTITY, chain,
 /// #     volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)], regions: vec![table], sources: vec![],
+/// #     grids: vec![],
 /// #     laws: Laws { stopping_distance: Some(stopping), ..Laws::default() } })?;
 /// # let checksum = 0;
 /// let mut robot = GuardedMonitor::new(configuration, Guard::new(RobotSlot(0), 1, checksum, Boot(1)))?;

@@ -30,6 +30,7 @@
 //!         volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)],
 //!         regions: vec![Region::sphere("pillar", Vec3::X * 2.0, 0.5).warning(0.2).guards(Guards::TCP)],
 //!         sources: vec![],
+//!         grids: vec![],
 //!         laws: Laws::default(),
 //!         chain,
 //!     })?,
@@ -56,6 +57,8 @@ mod continued_monitor;
 mod decision;
 mod distance_to_guarded;
 mod event;
+mod grid;
+mod grid_states;
 mod guarded_monitor;
 pub mod laws;
 mod monitor;
@@ -100,6 +103,7 @@ pub use elbowroom_interlock::{
 };
 pub use elbowroom_proximity::VolumeModel;
 pub use event::{Event, EventKind};
+pub use grid::{Grid, GridAxis, GridSpace};
 pub use guarded_monitor::{GuardedMonitor, NotObeyed};
 pub use laws::{Laws, StoppingSettings};
 pub use monitor::Monitor;

@@ -119,6 +119,7 @@ impl Monitor {
             return self.stop(s, Fault::Braking);
         }
         self.regions.update(&self.config, &self.clearances, &mut self.sweep, &mut self.log);
+        self.regions.update_grids(&self.config, &self.now);
         if let Some(zone_client) = &mut self.zone_client {
             let Self { regions, clearances, log, .. } = self;
             let status = |r: RegionId| RegionStatus {
@@ -169,7 +170,7 @@ impl Monitor {
     /// let volumes = vec![Volume::tcp(LinkId(1), Vec3::ZERO), Volume::gripped("ball", LinkId(1), ball)];
     /// # let pillar = Region::sphere("pillar", Vec3::X * 2.0, 0.5).warning(0.4);
     /// # let mut monitor = Monitor::new(Configuration::new(ConfigurationParts { robot: "rail".into(),
-    /// #     base_in_world: Pose::IDENTITY, chain, volumes, regions: vec![pillar], sources: vec![], laws: Laws::default() })?, None)?;
+    /// #     base_in_world: Pose::IDENTITY, chain, volumes, regions: vec![pillar], sources: vec![], grids: vec![], laws: Laws::default() })?, None)?;
     /// // Half a metre before a pillar with a warning zone of 0.4 m; then with a ball of 0.2 m in the hand.
     /// assert_eq!(monitor.tick(&Snapshot::stationary(0.0, &[1.0])).speed_override, 1.0);
     /// monitor.attach(VolumeId(1), &Pose::IDENTITY)?;
@@ -221,7 +222,7 @@ impl Monitor {
     /// # let chain = Chain::new("rail", vec!["base".into(), "carriage".into()], vec![rail])?;
     /// # let mut monitor = Monitor::new(Configuration::new(ConfigurationParts { robot: "rail".into(), chain,
     /// #     base_in_world: Pose::IDENTITY, volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)], regions: vec![],
-    /// #     sources: vec![], laws: Laws::default() })?, None)?;
+    /// #     sources: vec![], grids: vec![], laws: Laws::default() })?, None)?;
     /// monitor.tick(&Snapshot::stationary(0.0, &[0.0]));
     /// assert_eq!(monitor.tick(&Snapshot::stationary(0.002, &[1.0])).speed_override, 0.0); // 1 m in 2 ms
     /// monitor.forget_position();

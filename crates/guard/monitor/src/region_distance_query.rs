@@ -33,6 +33,7 @@ use crate::{Configuration, Monitor, RegionId, SourceState, Volume};
 ///     volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)],
 ///     regions: vec![Region::sphere("pillar", Vec3::X * 2.0, 0.5).guards(Guards::TCP)],
 ///     sources: vec![],
+///     grids: vec![],
 ///     laws: Laws::default(),
 ///     chain,
 /// })?;

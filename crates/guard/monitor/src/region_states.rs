@@ -1,6 +1,8 @@
 //! State of each region of a monitor: whether it is on, and whether the robot is in it.
 
 use crate::event::EventLog;
+use crate::grid_states::GridStates;
+use crate::placement::Placement;
 use crate::region_clearance::RegionClearances;
 use crate::region_sweep::RegionSweep;
 use crate::zone_state::{DigitalOutputs, ZoneState};
@@ -17,7 +19,7 @@ pub(crate) struct RegionState {
     pub(crate) presence: ZoneState,
 }
 
-/// The regions of a monitor, by their indices, and the digital outputs that they request.
+/// The regions of a monitor, by their indices, and the digital outputs that they and the grids request.
 #[derive(Debug)]
 pub(crate) struct RegionStates {
     states: Vec<RegionState>,
@@ -31,6 +33,7 @@ pub(crate) struct RegionStates {
     /// Regions switched for this tick; the motion since the previous tick does not count for them.
     just_switched: Vec<RegionId>,
     outputs: DigitalOutputs,
+    grids: GridStates,
 }
 
 impl RegionStates {
@@ -47,6 +50,7 @@ impl RegionStates {
             switched: Vec::with_capacity(2 * count + 16),
             just_switched: Vec::with_capacity(2 * count + 16),
             outputs: DigitalOutputs::new(),
+            grids: GridStates::new(&config.grids),
         }
     }
 
@@ -60,7 +64,7 @@ impl RegionStates {
 
     /// The digital outputs, one bit each.
     pub(crate) fn output_bits(&self) -> u64 {
-        self.outputs.bits
+        self.outputs.bits | self.grids.bits
     }
 
     /// Switches a region; returns false if it is in that state already.
@@ -125,7 +129,13 @@ impl RegionStates {
         }
     }
 
-    /// Copies the state of each region that has not changed; all other regions keep their state.
+    /// Finds the cells of the grids in which the robot is now.
+    pub(crate) fn update_grids(&mut self, config: &Configuration, now: &Placement) {
+        self.grids.update(config, now);
+    }
+
+    /// Copies the state of each region that has not changed; all other regions keep their state. The cells of the
+    /// grids are copied, too.
     pub(crate) fn continue_from(
         &mut self,
         config: &Configuration,
@@ -134,6 +144,7 @@ impl RegionStates {
         log: &mut EventLog,
     ) {
         self.warned.clear();
+        self.grids.continue_from(&former.grids);
         for (r, before) in same.iter().enumerate() {
             let Some(before) = before else { continue };
             let (state, before) = (&mut self.states[r], *former.get(*before));

@@ -31,7 +31,7 @@ const ROUNDING_M: f64 = 1e-12;
 /// # let chain = Chain::new("rail", vec!["base".into(), "carriage".into()], vec![rail])?;
 /// # let plate = Region::cuboid("plate", Vec3::X, Vec3::new(0.004, 1.0, 1.0), Rotation::IDENTITY).guards(Guards::TCP);
 /// # let configuration = Configuration::new(ConfigurationParts { robot: "rail".into(), base_in_world: Pose::IDENTITY, chain,
-/// #     volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)], regions: vec![plate], sources: vec![], laws: Laws::default() })?;
+/// #     volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)], regions: vec![plate], sources: vec![], grids: vec![], laws: Laws::default() })?;
 /// // A TCP on a rail moves by 8 mm, through a plate of 4 mm.
 /// let mut sweep = RegionSweep::new(&configuration);
 /// sweep.advance(&configuration, &[0.996], &[], 0.002);

@@ -24,6 +24,11 @@ pub enum Part {
 }
 
 impl Part {
+    /// True for the tool centre point.
+    pub(crate) fn is_tcp(self) -> bool {
+        matches!(self, Self::Tcp | Self::TcpOutside)
+    }
+
     /// True if a region with these guards includes this part. `arm` includes the links, the tool and the load; every
     /// guard includes a tool centre point outside all solids.
     pub fn counts_for(self, guards: Guards) -> bool {

@@ -11,8 +11,8 @@ use elbowroom_interlock::wire::{MAX_BYTES, decode_state, encode_grants};
 use elbowroom_interlock::{Arbiter, ArbiterSettings, Boot, Micros, RobotSettings, StateMessage};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
-    AccessClass, Configuration, ConfigurationParts, EventKind, Laws, Life, Monitor, OverrideReason, Region, RegionKind,
-    RobotSlot, SlotId, Snapshot, StoppingSettings, Volume, VolumeId, ZoneArbiter,
+    AccessClass, Configuration, ConfigurationParts, EventKind, Grid, GridAxis, GridSpace, Laws, Life, Monitor,
+    OverrideReason, Region, RegionKind, RobotSlot, SlotId, Snapshot, StoppingSettings, Volume, VolumeId, ZoneArbiter,
 };
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -42,11 +42,13 @@ fn main() {
         let mut volumes = arm_volumes();
         volumes.push(Volume::gripped("part", LinkId(6), Shape::Sphere(Sphere { radius: 0.1 })));
         let part = VolumeId(volumes.len() - 1);
-        let parts = ConfigurationParts { laws, ..parts(arm(), volumes, regions.clone()) };
+        let grids = grids();
+        let parts = ConfigurationParts { laws, grids, ..parts(arm(), volumes, regions.clone()) };
         let mut m = Monitor::new(Configuration::new(parts).unwrap(), None).unwrap();
         let switchable = m.region("1").unwrap();
         let counter = AllocationCounter::start();
         let (mut pairs, mut applied, mut t, mut carried) = (0, 0.0, 0.0_f64, 0);
+        let (mut cell_changes, mut before) = (0, 0);
         for i in 0..5000 {
             let now_s = 0.002 * f64::from(i);
             let q = [t.sin(), 0.5 * (1.3 * t).sin(), (0.7 * t).cos(), 0.2 * t.sin(), t.cos(), 0.0];
@@ -62,17 +64,30 @@ fn main() {
             let report = m.tick(&Snapshot { qd: &qd, intent: Some(&speed), ..Snapshot::stationary(now_s, &q) });
             assert!(!matches!(report.reason, OverrideReason::Fault(_)), "{}", report.reason);
             pairs += report.measured_pairs;
+            cell_changes += u32::from(report.outputs != before);
+            before = report.outputs;
             // The robot applies the override, but creeps when it should stop.
             applied = report.speed_override;
             t += 0.002 * applied.max(0.1);
             assert!(m.events().len() < 8000);
         }
         let changes = counter.changes();
-        assert!(pairs > 5000 && carried == 2500);
+        assert!(pairs > 5000 && carried == 2500 && cell_changes > 10, "{cell_changes}");
         assert_eq!(changes, 0);
     }
     exchange();
     guarded();
+}
+
+/// A grid of the working area, and one of two joints.
+fn grids() -> Vec<Grid> {
+    let axis = |count: u32| GridAxis { from: -1.0, to: 1.0, count };
+    let tcp = GridSpace::Tcp { frame_in_world: Pose::IDENTITY };
+    let grid = |name: &str, space, axes, output| Grid { name: name.into(), space, axes, output, hysteresis: 1e-3 };
+    vec![
+        grid("area", tcp, vec![axis(10), axis(10), axis(10)], 0),
+        grid("sector", GridSpace::Joints(vec![0, 2]), vec![axis(20), axis(20)], 32),
+    ]
 }
 
 fn stopping() -> StoppingSettings {

@@ -104,12 +104,18 @@ pub fn contains(polygon: &[Point2], p: Point2) -> bool {
 pub fn touches(convex: &[Point2], simple: &[Point2]) -> bool {
     convex.iter().any(|&p| contains(simple, p))
         || simple.iter().any(|&p| convex_contains(convex, p))
-        || edges(convex).any(|e| edges(simple).any(|f| edges_intersect(e, f)))
+        || edges(convex).any(|e| edges(simple).any(|f| segments_intersect(e, f)))
 }
 
-fn edges_intersect((a, b): (Point2, Point2), (c, d): (Point2, Point2)) -> bool {
+/// Whether two line segments have a point in common, their ends included.
+pub fn segments_intersect((a, b): (Point2, Point2), (c, d): (Point2, Point2)) -> bool {
     let side = |p: Point2, q: Point2, r: Point2| (q - p).cross(r - p);
-    side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
+    // Of segments on one line all sides are 0, and their extents decide.
+    let overlap = |of: fn(&Point2) -> f64| {
+        let (a, b, c, d) = (of(&a), of(&b), of(&c), of(&d));
+        a.min(b) <= c.max(d) && c.min(d) <= a.max(b)
+    };
+    overlap(|p| p.x) && overlap(|p| p.y) && side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
 }
 
 /// The edges of a polygon, from corner to corner and back to the first.

@@ -1,7 +1,7 @@
 //! Calibration, polygons, blobs and masks compared with naive implementations.
 
 use elbowroom_spatial::Vec3;
-use elbowroom_testkit::random::xorshift;
+use elbowroom_testkit::random::{SplitMix, xorshift};
 use elbowroom_vision::{
     ArmPart, Calibration, Camera, ConnectedComponents, FloorHomography, Intrinsics, PixelMask, Point2, polygon,
 };
@@ -211,4 +211,39 @@ fn a_part_that_is_partly_behind_the_camera_masks_the_whole_image() {
     assert_eq!(mask.coverage(), 0.0);
     mask.mask_arm(&camera.into(), &[part(1.0)], 0.01).unwrap();
     assert_eq!(mask.coverage(), 1.0);
+}
+
+/// Corners on a small grid, so that segments often touch, lie on one line or are points. The oracle solves for the common
+/// point in whole numbers, and compares extents along the line where there is none or more than one.
+#[test]
+fn segments_intersect_where_they_have_a_point_in_common() {
+    let mut random = SplitMix(3);
+    let mut whole = || (random.between(0.0, 5.0) as i64, random.between(0.0, 5.0) as i64);
+    let point = |(x, y): (i64, i64)| p(x as f64, y as f64);
+    let (mut met, mut parallel) = (0, 0);
+    for _ in 0..50_000 {
+        let [a, b, c, d] = [whole(), whole(), whole(), whole()];
+        let (r, s, q) = ((b.0 - a.0, b.1 - a.1), (d.0 - c.0, d.1 - c.1), (c.0 - a.0, c.1 - a.1));
+        let cross = |u: (i64, i64), v: (i64, i64)| u.0 * v.1 - u.1 * v.0;
+        let (all, t, u) = (cross(r, s), cross(q, s), cross(q, r));
+        let within = |part: i64| if all > 0 { (0..=all).contains(&part) } else { (all..=0).contains(&part) };
+        let expected = if all != 0 {
+            within(t) && within(u)
+        } else {
+            parallel += 1;
+            let on = |(from, to): ((i64, i64), (i64, i64)), p: (i64, i64)| {
+                let (way, out) = ((to.0 - from.0, to.1 - from.1), (p.0 - from.0, p.1 - from.1));
+                let along = way.0 * out.0 + way.1 * out.1;
+                cross(way, out) == 0
+                    && along >= 0
+                    && along <= way.0 * way.0 + way.1 * way.1
+                    && (way != (0, 0) || out == (0, 0))
+            };
+            on((a, b), c) || on((a, b), d) || on((c, d), a) || on((c, d), b)
+        };
+        let found = polygon::segments_intersect((point(a), point(b)), (point(c), point(d)));
+        assert_eq!(found, expected, "{a:?} {b:?} and {c:?} {d:?}");
+        met += usize::from(found);
+    }
+    assert!(met > 5000 && parallel > 5000, "{met} {parallel}");
 }

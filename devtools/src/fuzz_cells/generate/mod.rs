@@ -5,6 +5,7 @@ mod cooperating;
 mod encounter;
 mod exchange;
 mod faults;
+mod grids;
 mod guided;
 mod moving;
 mod moving_object;
@@ -91,6 +92,16 @@ impl Kind {
 
 /// Makes a random cell of a kind; equal streams give equal cells.
 pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
+    let mut spec = without_grids(kind, random, places);
+    // The oracle does not know when a fault of the input holds the outputs.
+    let has_grids = matches!(kind, Kind::Stop | Kind::Exchange | Kind::Moving | Kind::Tools | Kind::Planned);
+    if has_grids && let Ok(cell) = spec.parse(places.cells) {
+        grids::some(&mut spec, &cell, random);
+    }
+    spec
+}
+
+fn without_grids(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
     match kind {
         Kind::Exchange => exchange::cell(random),
         Kind::Stop => stop(random, places),

@@ -154,7 +154,7 @@ fn is_driven_in(motion: &OracleMotion<'_>, region: usize, visits: [(&ZoneVisit<'
 /// Whether the robot that is inside since tick `entered` came in by its own motion, although it avoids regions with
 /// foreseeable motion.
 fn drove_in(motion: &OracleMotion<'_>, region: usize, visit: &ZoneVisit<'_>, entered: usize) -> bool {
-    let keeps_away = motion.cell.laws.stopping_reaction_s.is_some();
+    let keeps_away = motion.cell.monitoring.stopping_reaction_s.is_some();
     first_touch(&visit.1, entered, entered + 1)
         .is_some_and(|(k, u, pair)| keeps_away && pair.moves_at(k, u) && motion.is_foreseen(region, visit.0, (k, u)))
 }

@@ -28,6 +28,8 @@ pub enum Finding {
     Touched { robot: usize, t_s: f64 },
     /// An axis of a tool that keeps its direction on a planned move left it.
     Tilted { robot: usize, t_s: f64, off_rad: f64, within_rad: f64 },
+    /// The number of a grid is not that of the cell that the robot occupies.
+    WrongCell { robot: usize, t_s: f64, number: u64 },
     /// A joint was faster than it can, by this share of its speed.
     TooFast { robot: usize, t_s: f64, share: f64 },
     /// A joint decelerated harder than it can.

@@ -12,6 +12,7 @@ mod entry;
 mod exchange;
 pub mod findings;
 mod frame;
+mod grids;
 mod guarded;
 mod guided;
 mod kept_axes;
@@ -60,6 +61,7 @@ pub fn check(
     entry::check(cell, recording, &arms, &mut findings);
     cooperating::check(cell, recording, &arms, &mut findings);
     kept_axes::check(cell, recording, &arms, &mut findings);
+    grids::check(cell, recording, &arms, &mut findings);
     Ok(findings)
 }
 

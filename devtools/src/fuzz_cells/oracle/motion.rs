@@ -102,7 +102,7 @@ impl<'a> OracleMotion<'a> {
     fn stop_s(&self, robot: usize) -> f64 {
         let limits = &self.cell.robots[robot].limits;
         let slowest = limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
-        slowest + self.cell.laws.stopping_reaction_s.unwrap_or(0.0) + 2.0 * self.recording.tick_s
+        slowest + self.cell.monitoring.stopping_reaction_s.unwrap_or(0.0) + 2.0 * self.recording.tick_s
     }
 
     /// Whether a robot moves from tick `k` to the next.

@@ -33,7 +33,7 @@ pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], promises: &P
             if promises.exclude(region, robot) {
                 let (t_s, speed) = (motion.time_s(k, u), pair.own_speed(k));
                 findings.list.push(Finding::Excluded { robot, region, t_s, speed });
-            } else if motion.cell.laws.stopping_reaction_s.is_some() {
+            } else if motion.cell.monitoring.stopping_reaction_s.is_some() {
                 watch.driven(findings);
             }
         }

@@ -398,3 +398,30 @@ fn a_work_piece_that_is_dropped_or_off_its_path_and_joints_that_are_too_fast_are
     let list = found(&fast);
     assert!(matches!(list[..], [Finding::TooFast { robot: 1, .. }]), "{list:?}");
 }
+
+#[test]
+fn a_wrong_number_of_a_grid_is_found_and_a_right_one_is_not() {
+    let grids = "[grid.space]\nfrom = [-0.31, -1, -1]\nto = [0.83, 1, 1]\ncells = [5, 2, 1]\noutput = 3\n\
+                 [grid.joint]\njoints = [\"joint_1\"]\nfrom = [0.1]\nto = [0.6]\ncells = [4]\noutput = 40\nhysteresis = 0.03\n";
+    let (cell, outcome) = run(&format!("{}{grids}", rail("a", 0.25, -0.5, 1.0)), true);
+    let check = |outcome: &RunOutcome| {
+        check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).unwrap().list
+    };
+    assert_eq!(check(&outcome), []);
+    let samples = &outcome.recording.robots[0].samples;
+    let number = |i: usize, at: u8| samples[i].outputs >> at & 7;
+    let seen: Vec<u64> = (0..=4).filter(|n| (0..samples.len()).any(|i| number(i, 40) == *n)).collect();
+    assert_eq!(seen, [0, 1, 2, 3, 4], "the rail passes all of them");
+    for (bit, from) in [(1_u64 << 3, 0), (1 << 40, samples.len() / 2)] {
+        let mut wrong = outcome.clone();
+        wrong.recording.robots[0].samples[from..].iter_mut().for_each(|s| s.outputs ^= bit);
+        assert!(matches!(check(&wrong)[..], [Finding::WrongCell { .. }]), "{:?}", check(&wrong));
+    }
+    // One division is left late: at the next border but one.
+    let mut late = outcome.clone();
+    let change = (1..samples.len()).find(|i| number(*i, 40) == 2 && number(i - 1, 40) == 1).unwrap();
+    for s in &mut late.recording.robots[0].samples[change..change + 3] {
+        s.outputs = s.outputs & !(7 << 40) | 1 << 40;
+    }
+    assert!(matches!(check(&late)[..], [Finding::WrongCell { .. }]), "{:?}", check(&late));
+}

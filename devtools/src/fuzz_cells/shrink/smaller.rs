@@ -34,6 +34,9 @@ pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     for i in 0..spec.regions.len() {
         list.push(|c| remove_region(c, i));
     }
+    for i in 0..spec.grids.len() {
+        list.push(|c| drop(c.grids.remove(i)));
+    }
     for (i, object) in spec.objects.iter().enumerate() {
         without_object(&mut list, i, object);
     }
@@ -190,6 +193,8 @@ fn remove_robot(c: &mut CellSpec, i: usize) {
             *robot = moved(*robot);
         }
     }
+    c.grids.retain(|g| g.robot != i);
+    c.grids.iter_mut().for_each(|g| g.robot = moved(g.robot));
     let names: Vec<String> = c.regions.iter().map(|r| r.name.clone()).collect();
     for robot in &mut c.robots {
         robot.program.steps.retain(|s| !matches!(s, StepSpec::Switch { region, .. } if !names.contains(region)));

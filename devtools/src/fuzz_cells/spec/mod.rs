@@ -1,6 +1,7 @@
 //! Cell in the form of the fuzzer: simple enough to be shrunk, and written as a cell file.
 
 mod comments;
+mod grid;
 mod guidance;
 mod object;
 mod recording;
@@ -15,6 +16,7 @@ use elbowroom_cell::Cell;
 use elbowroom_sim::InputFault;
 
 pub use comments::{read_faults, read_repeat};
+pub use grid::GridSpec;
 pub use guidance::{GuidanceSpec, HandRow};
 pub use object::{MotionSpec, ObjectSpec};
 pub use recording::RecordingSpec;
@@ -35,6 +37,7 @@ pub struct CellSpec {
     pub belts: Vec<BeltSpec>,
     pub objects: Vec<ObjectSpec>,
     pub regions: Vec<RegionSpec>,
+    pub grids: Vec<GridSpec>,
     pub faults: Vec<InputFault>,
     /// Number of passes of the programs, besides their own `repeat`; 0 is once.
     pub repeat: u32,
@@ -56,6 +59,7 @@ impl CellSpec {
         self.belts.iter().for_each(|belt| belt.write(&mut t));
         self.objects.iter().for_each(|object| object.write(&mut t));
         self.regions.iter().for_each(|region| region.write(&mut t));
+        self.grids.iter().for_each(|grid| grid.write(&mut t));
         for (i, robot) in self.robots.iter().enumerate() {
             robot.program.write(&mut t, i);
             if !robot.evades.is_empty() {

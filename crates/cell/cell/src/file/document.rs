@@ -9,6 +9,9 @@ type Result<T> = std::result::Result<T, Diagnostic>;
 /// Largest cell file, bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
+/// The tables that hold regions: `[region.NAME]`, `[fence.NAME]`.
+pub(crate) const REGION_TABLES: [&str; 2] = ["region", "fence"];
+
 /// A parsed cell file, not yet resolved: every key and value with its line.
 #[derive(Debug, Clone)]
 pub struct CellFile {
@@ -54,9 +57,10 @@ impl CellFile {
         Self { on_disk: false, ..self }
     }
 
-    /// Names of the regions, in file order.
+    /// Names of the regions, fences among them, in file order.
     pub(crate) fn region_names(&self) -> Vec<String> {
-        let tables = self.entries.iter().filter(|e| e.key == "region").filter_map(|e| match &e.node.data {
+        let of_regions = |e: &&toml_tables::Entry| REGION_TABLES.contains(&e.key.as_str());
+        let tables = self.entries.iter().filter(of_regions).filter_map(|e| match &e.node.data {
             toml_tables::Data::Table(tables) => Some(tables),
             _ => None,
         });

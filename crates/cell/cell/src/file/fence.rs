@@ -9,22 +9,25 @@ use elbowroom_vision::Point2;
 
 use super::schema::{GATE, names};
 use super::sensor::two;
-use crate::Units;
-use crate::fence::{Fence, FenceError, Gate};
+use crate::fence::{Fence, FenceError, Gate, mesh_of_boxes};
+use crate::{RegionSolid, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
 const CORNERS: &str = "corners = [[-1500, -1500], [1500, -1500], [1500, 1500], [-1500, 1500]]";
 const GATES: &str = "gates = [{ from = [1500, -400], to = [1500, 400], top = 900 }]";
+/// Corners of a fence, at most: each wall is compared with all others.
+const MOST_CORNERS: usize = 500;
 /// Thickness of the walls, m, if the file does not state it.
 const THICKNESS_M: f64 = 0.05;
 
 /// The region of a fence: the solid of its walls.
-pub(super) fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
+pub(super) fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<(Region, RegionSolid)> {
     let corners = t.need("corners", CORNERS)?;
     let listed = corners.list(CORNERS)?;
-    if listed.len() < 3 {
-        return Err(corners.error(format!("has {} corners and needs three or more", listed.len())).hint(CORNERS));
+    if !(3..=MOST_CORNERS).contains(&listed.len()) {
+        let what = format!("has {} corners, not 3 to {MOST_CORNERS}", listed.len());
+        return Err(corners.error(what).hint(CORNERS));
     }
     let floor_m = t.get("floor").map_or(Ok(0.0), |v| units.length_of(&v))?;
     let height_m = units.positive_length(&t.need("height", "height = 2000")?)?;
@@ -41,8 +44,10 @@ pub(super) fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
         thickness_m: t.get("thickness").map_or(Ok(THICKNESS_M), |v| units.positive_length(&v))?,
         gates,
     };
-    let mesh = fence.mesh().map_err(|e| refused(t, &corners, &e, units))?;
-    Ok(Region::solid(name, Shape::Mesh(mesh.into()), Pose::IDENTITY))
+    let refused = |e: FenceError| refused(t, &corners, &e, units);
+    let walls = fence.boxes().map_err(refused)?;
+    let mesh = mesh_of_boxes(&walls).map_err(|e| refused(e.into()))?;
+    Ok((Region::solid(name, Shape::Mesh(mesh.into()), Pose::IDENTITY), RegionSolid::Walls(walls)))
 }
 
 fn gate(v: &Value<'_>, units: Units, [bottom_m, top_m]: [f64; 2]) -> Result<Gate> {

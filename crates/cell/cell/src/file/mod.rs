@@ -12,6 +12,7 @@ mod flange;
 mod follow;
 mod force;
 mod goal;
+mod grid;
 mod guarding;
 mod guide;
 mod models;
@@ -37,14 +38,15 @@ use elbowroom_monitor::{Laws, RobotSet};
 use elbowroom_robot::{GeometryId, RobotId};
 
 pub use document::CellFile;
+pub(crate) use document::REGION_TABLES;
 use robot::robot_of;
 pub use schema::key_reference;
 use schema::names;
 pub use units::QUATERNION_TOLERANCE;
 
 use crate::{
-    Approval, Cell, CellLaws, CellPairRules, CellRegionId, CellRobot, CellSensor, CellTiming, FrameSources, Guidance,
-    MapSpec, PairFile, QueryModel, Units, configure, joint_contacts, rest_pose_contacts, seal,
+    Approval, Cell, CellPairRules, CellRegionId, CellRobot, CellSensor, CellTiming, FrameSources, Guidance, MapSpec,
+    Monitoring, PairFile, QueryModel, Units, configure, joint_contacts, rest_pose_contacts, seal,
 };
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -75,7 +77,7 @@ impl CellFile {
             moving_objects: Vec::new(),
             regions: Vec::new(),
             frame_sources: FrameSources::default(),
-            laws: laws(&root, &mut warnings)?,
+            monitoring: monitoring(&root, &mut warnings)?,
             sensors: Vec::new(),
             pair_rules: CellPairRules::default(),
             guidance: Guidance::default(),
@@ -94,6 +96,7 @@ impl CellFile {
         warnings.extend(found);
         warnings.extend(contacts_at_start(&cell));
         regions(&root, &mut cell, &mut warnings)?;
+        grid::read(&root, &mut cell)?;
         programs(&root, &mut cell, &mut warnings)?;
         // After the programs: regions guard the objects that programs grip.
         for (t, index) in region::tables(&root)?.into_iter().zip(0..) {
@@ -228,11 +231,11 @@ fn stale_ms(v: &Value<'_>, warnings: &mut Vec<Diagnostic>) -> Result<f64> {
     Ok(ms)
 }
 
-fn laws(root: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<CellLaws> {
+fn monitoring(root: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<Monitoring> {
     // Default reaction time: one tick.
     let tick_s = root.get("tick_ms").map_or(Ok(2.0), |v| tick_ms(&v))? / 1000.0;
     let Some(v) = root.get("monitor") else {
-        return Ok(CellLaws { reaction_s: tick_s, ..CellLaws::default() });
+        return Ok(Monitoring { reaction_s: tick_s, ..Monitoring::default() });
     };
     let t = v.table("[monitor]")?;
     t.only(&names(&[schema::MONITOR]))?;
@@ -248,11 +251,12 @@ fn laws(root: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<CellLaws> {
     }
     let reaction_s = t.get("reaction_ms").map_or(Ok(tick_s), |v| v.not_negative().map(|ms| ms / 1000.0))?;
     let stopping = t.flag_or("stopping_distance", false)?;
-    Ok(CellLaws {
+    Ok(Monitoring {
         laws,
         reaction_s,
         stopping_reaction_s: stopping.then_some(reaction_s),
         reaction_delay_s: if t.get("reaction_ms").is_some() { reaction_s } else { 0.0 },
+        grids: Vec::new(),
     })
 }
 

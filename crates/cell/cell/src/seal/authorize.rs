@@ -37,9 +37,12 @@ fn edits(configuration: &Configuration, robot: RobotId, before: &Cell, after: &C
     for new in after.regions.iter().filter(|r| r.robots.contains(&robot) && is_new(&r.region.name)) {
         edits.push(ConfigurationEdit::Add(alone(&new.region)));
     }
-    if after.laws != before.laws {
+    if after.monitoring != before.monitoring {
         let stopping_distance = configuration.laws().stopping_distance.clone();
-        edits.push(ConfigurationEdit::Laws(elbowroom_monitor::Laws { stopping_distance, ..after.laws.laws.clone() }));
+        edits.push(ConfigurationEdit::Laws(elbowroom_monitor::Laws {
+            stopping_distance,
+            ..after.monitoring.laws.clone()
+        }));
     }
     edits
 }

@@ -13,12 +13,13 @@ use super::authorize::authorize;
 use super::log::{Log, log_of};
 use super::result::Result;
 use super::state::{SealedState, least_class, without_consequences};
+use crate::file::REGION_TABLES;
 use crate::{Cell, CellFile};
 
 /// An edit. Values are TOML: `150`, `[900, 0, 0]`, `"temporary"`. Anything that is not TOML is treated as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CellEdit {
-    /// Adds regions: tables `[region.NAME]` of a cell file.
+    /// Adds regions: tables `[region.NAME]` and `[fence.NAME]` of a cell file.
     Add {
         /// The tables.
         toml: String,
@@ -302,11 +303,13 @@ fn edited(cell: &Path, text: &str, edit: &CellEdit) -> Result<String> {
             return added(cell, &document, text, toml, from);
         }
         CellEdit::Change { region, set, unset } => {
-            let table = regions(&mut document).and_then(|r| r.get_mut(region)).and_then(Item::as_table_like_mut);
+            let table = tables_with(&mut document, region).and_then(|t| t.get_mut(region));
+            let table = table.and_then(Item::as_table_like_mut);
             change(cell, table.ok_or_else(|| unknown(cell, text, region))?, &format!("region.{region}"), set, unset)?;
         }
         CellEdit::Remove { region } => {
-            regions(&mut document).and_then(|r| r.remove(region)).ok_or_else(|| unknown(cell, text, region))?;
+            let tables = tables_with(&mut document, region);
+            tables.and_then(|t| t.remove(region)).ok_or_else(|| unknown(cell, text, region))?;
         }
         CellEdit::Laws { set, unset } => {
             let item = document.as_table_mut().entry("monitor").or_insert_with(toml_edit::table);
@@ -322,8 +325,14 @@ fn document(path: &Path, text: &str) -> Result<DocumentMut> {
     text.parse().map_err(|e: toml_edit::TomlError| Diagnostic::new(path, None, e.message().to_owned()))
 }
 
-fn regions(document: &mut DocumentMut) -> Option<&mut dyn TableLike> {
-    document.get_mut("region").and_then(Item::as_table_like_mut)
+/// The tables that hold this region: those of `[region.NAME]` or of `[fence.NAME]`.
+fn tables_with<'d>(document: &'d mut DocumentMut, region: &str) -> Option<&'d mut dyn TableLike> {
+    let word = REGION_TABLES.into_iter().find(|word| has(document, word, region))?;
+    document.get_mut(word).and_then(Item::as_table_like_mut)
+}
+
+fn has(document: &DocumentMut, word: &str, name: &str) -> bool {
+    document.get(word).and_then(Item::as_table_like).is_some_and(|tables| tables.contains_key(name))
 }
 
 fn unknown(cell: &Path, text: &str, region: &str) -> Diagnostic {
@@ -342,12 +351,12 @@ fn added(cell: &Path, document: &DocumentMut, text: &str, toml: &str, from: &Pat
     if !first.is_some_and(|l| l.starts_with('[')) {
         return Err(wrong(None, "holds no region, or keys outside of [region.NAME]".into()));
     }
-    if let Some(e) = new.entries.iter().find(|e| e.key != "region") {
-        return Err(wrong(Some(e.line), format!("`{}` is no region", e.key)));
+    if let Some(e) = new.entries.iter().find(|e| !REGION_TABLES.contains(&e.key.as_str())) {
+        return Err(wrong(Some(e.line), format!("`{}` is neither a region nor a fence", e.key)));
     }
     let names = new.region_names();
-    let known = document.get("region").and_then(Item::as_table_like);
-    if let Some(name) = names.iter().find(|n| known.is_some_and(|k| k.contains_key(n))) {
+    let is_known = |name: &&String| REGION_TABLES.iter().any(|word| has(document, word, name));
+    if let Some(name) = names.iter().find(is_known) {
         let what = format!("there is a region `{name}` already");
         let hint = format!("elbowroom region change {} {name} KEY=VALUE --as CLASS --key FILE", cell.display());
         return Err(Diagnostic::new(cell, None, what).hint(hint));

@@ -9,6 +9,7 @@ use elbowroom_monitor::{AccessClass, Life};
 
 use super::source::SealedSource;
 use super::value::{key, text};
+use crate::file::REGION_TABLES;
 use crate::{Cell, CellFile, configure};
 
 /// Tables and keys that do not affect the monitors. Everything else is sealed. An object that a region follows is
@@ -16,7 +17,7 @@ use crate::{Cell, CellFile, configure};
 const FREE: &[&str] =
     &["version", "name", "max_s", "checksum", "object", "scene", "map", "pairs", "avoidance", "program"];
 /// Tables with names: `[robot.NAME]`.
-const NAMED: &[&str] = &["robot", "region", "encoder"];
+const NAMED: &[&str] = &["robot", "region", "encoder", "fence"];
 /// Initial joint values of a robot in the simulation.
 const START: &str = "start";
 
@@ -36,7 +37,7 @@ impl SealedState {
             match &e.node.data {
                 Data::Table(entries) if NAMED.contains(&e.key.as_str()) => {
                     for named in entries {
-                        state.add_item(&format!("{}.{}", e.key, named.key), named);
+                        state.add_item(&format!("{}.{}", item_word(&e.key), named.key), named);
                     }
                 }
                 Data::Table(_) => state.add_item(&e.key, e),
@@ -163,6 +164,11 @@ impl SealedState {
         value(Change::RESOLVED)?;
         Some(if value("life").is_some_and(|l| l == "\"temporary\"") { Life::Temporary } else { Life::Permanent })
     }
+}
+
+/// How an item of a table is called: a fence is a region, and their names differ.
+fn item_word(table: &str) -> &str {
+    if REGION_TABLES.contains(&table) { "region" } else { table }
 }
 
 /// The lowest class that may make these changes: the programmer if all of them concern regions that are temporary

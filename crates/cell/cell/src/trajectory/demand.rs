@@ -73,7 +73,7 @@ pub fn recording_warnings(cell: &Cell, robot: RobotId) -> Vec<Diagnostic> {
         let joint = RecordedJoint { cell, robot: &cell.robots[robot.0], program, j };
         warnings.extend(joint.too_fast(demand));
         warnings.extend(joint.begins_in_motion(demand));
-        if cell.laws.stopping_reaction_s.is_some() {
+        if cell.monitoring.stopping_reaction_s.is_some() {
             warnings.extend(joint.too_hard(demand));
         }
     }

@@ -62,7 +62,7 @@ const Kinematics = (() => {
     for (const joint of robot.joints) joint.origin = fromValues(joint.origin);
     for (const part of [...robot.solids, ...robot.volumes, ...robot.gripped.map((g) => g.volume)]) part.pose = fromValues(part.pose);
   }
-  for (const thing of [...Data.objects, ...Data.shields]) thing.pose = fromValues(thing.pose);
+  for (const thing of [...Data.objects, ...Data.shields, ...Data.grids]) thing.pose = fromValues(thing.pose);
 
   // The pose of every link in the world; q has one value per slider.
   function links(robot, q) {

@@ -80,6 +80,25 @@ function createStage(corners, lineCount) {
     object.matrixWorldNeedsUpdate = true;
   }
 
+  // The borders of a grid's cells: along each axis a line through every crossing of the borders of the other two.
+  function gridLines(axes) {
+    const borders = axes.map(([from, to, count]) => Array.from({ length: count + 1 }, (_, i) => from + (to - from) * i / count));
+    const points = [];
+    for (let k = 0; k < 3; k++) {
+      const [a, b] = [(k + 1) % 3, (k + 2) % 3];
+      for (const u of borders[a]) for (const w of borders[b]) {
+        for (const end of axes[k].slice(0, 2)) {
+          const point = [0, 0, 0];
+          [point[k], point[a], point[b]] = [end, u, w];
+          points.push(...point);
+        }
+      }
+    }
+    const lines = new THREE.BufferGeometry();
+    lines.setAttribute('position', new THREE.BufferAttribute(new Float32Array(points), 3));
+    return lines;
+  }
+
   const robots = Data.robots.map((robot) => robot.solids.map((solid) => {
     const mesh = new THREE.Mesh(meshOf(solid.mesh), solidMaterial(solid.color));
     scene.add(mesh);
@@ -112,6 +131,12 @@ function createStage(corners, lineCount) {
     scene.add(glassy);
     return glassy;
   });
+
+  for (const grid of Data.grids) {
+    const lines = new THREE.LineSegments(gridLines(grid.axes), new THREE.LineBasicMaterial({ color: grid.color, transparent: true, opacity: 0.6 }));
+    setPose(lines, grid.pose);
+    scene.add(lines);
+  }
 
   // Lines between two points, with the distance.
   const lines = Array.from({ length: lineCount }, () => {

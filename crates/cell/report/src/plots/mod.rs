@@ -5,6 +5,7 @@ mod cooperation;
 mod distances;
 mod figure;
 mod figure12;
+mod grids;
 mod guidance;
 mod joints;
 mod overrides;
@@ -32,6 +33,7 @@ pub fn all(scene: &ReportScene, runs: &[(&str, &Recording)], planned: Option<&Re
         figures.extend(guidance::all(runs, run));
         figures.extend(cooperation::all(runs, run));
         figures.extend(timing::chart(runs, run));
+        figures.extend(grids::chart(runs, run));
         figures.extend(joints::chart(scene, runs, run));
     }
     figures

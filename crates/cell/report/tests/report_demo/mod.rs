@@ -1,8 +1,8 @@
 //! A synthetic run after the paper's figure 12, without simulation, to test the report alone.
 
-use elbowroom_cell::CellRegionId;
+use elbowroom_cell::{CellGrid, CellRegionId};
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
-use elbowroom_monitor::{EventKind, Guards, Life, OverrideReason, RegionId, Volume};
+use elbowroom_monitor::{EventKind, Grid, GridAxis, GridSpace, Guards, Life, OverrideReason, RegionId, Volume};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere, project_point};
 use elbowroom_report::ReportScene;
 use elbowroom_robot::{Collider, Robot, RobotId};
@@ -87,6 +87,15 @@ fn column() -> (Shape, Pose) {
 }
 
 /// The stop at the column, if the run is long enough for it.
+/// A grid of boxes around the path.
+fn grid() -> CellGrid {
+    let axis = |from: f64, to: f64, count: u32| GridAxis { from, to, count };
+    let axes = vec![axis(0.0, 1.6, 4), axis(-1.6, 1.6, 8), axis(0.0, 1.6, 1)];
+    let space = GridSpace::Tcp { frame_in_world: Pose::IDENTITY };
+    let grid = Grid { name: "area".into(), space, axes, output: 8, hysteresis: 0.0 };
+    CellGrid { robot: RobotId(0), line: 1, grid }
+}
+
 fn stops(samples: &[Sample], name: &str, monitored: bool, end_s: f64) -> Vec<Stop> {
     let stopped = samples.iter().find(|s| monitored && s.speed_override < 1e-3);
     let stop = stopped.map(|s| Stop {
@@ -141,6 +150,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
             distance_m: near.then_some(distance),
             governing: near.then_some(GoverningPoint { part: 0, point: tcp }),
             reason: if near { OverrideReason::Region(RegionId(0)) } else { OverrideReason::Free },
+            outputs: u64::from(grid().grid.cell_at(&tcp.to_array(), 0)) << 8,
         });
         s += v * tick_s;
     }
@@ -191,6 +201,7 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
             perception: None,
             ending: elbowroom_sim::RobotEnding::default(),
         }],
+        grids: vec![grid()],
         objects: vec![],
         sensors: vec![],
         virtual_robots: vec![],

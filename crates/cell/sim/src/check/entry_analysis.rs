@@ -135,8 +135,8 @@ impl EntryAnalysis<'_> {
         }
         if self.region_speed_m_s > 0.0 {
             let why = "the region moves: the laws stop the robot, but the region can reach a stopped robot";
-            let name = &region.name;
-            let write = format!("warning_output = 1 in [region.{name}], wired to a stop of the carrier of the region");
+            let table = self.region().table();
+            let write = format!("warning_output = 1 in {table}, wired to a stop of the carrier of the region");
             return Some(MissingGuarantee::new(why, write));
         }
         if self.robot().avoidance.is_some() {
@@ -231,10 +231,7 @@ impl EntryAnalysis<'_> {
         let enough = units.in_file_units(needed);
         Some(MissingGuarantee::new(
             why,
-            format!(
-                "stopping_distance = true in [monitor], or warning = {enough} in [region.{}]",
-                self.region().region.name
-            ),
+            format!("stopping_distance = true in [monitor], or warning = {enough} in {}", self.region().table()),
         ))
     }
 
@@ -247,7 +244,7 @@ impl EntryAnalysis<'_> {
 
     /// True if the stopping-distance law is on. `override_rate` does not delay it.
     fn has_stopping_law(&self) -> bool {
-        self.cell.laws.stopping_reaction_s.is_some()
+        self.cell.monitoring.stopping_reaction_s.is_some()
     }
 
     /// True if the warning zone alone is sufficient.
@@ -257,7 +254,7 @@ impl EntryAnalysis<'_> {
 
     /// True if `direction_aware` may permit full speed within the zone.
     fn releases_leaving_robot(&self) -> bool {
-        self.cell.laws.laws.direction_aware && !self.never_reverses()
+        self.cell.monitoring.laws.direction_aware && !self.never_reverses()
     }
 
     fn has_needed_thickness(&self) -> bool {
@@ -292,7 +289,7 @@ impl EntryAnalysis<'_> {
             return "no program moves the guarded volumes, and they are outside".into();
         }
         if self.has_stopping_law() {
-            let reaction = reacts_within(self.cell.laws.reaction_s);
+            let reaction = reacts_within(self.cell.monitoring.reaction_s);
             let program = if self.plays_trajectory() {
                 "it plays the recording unchanged (its accelerations are taken into account)"
             } else {

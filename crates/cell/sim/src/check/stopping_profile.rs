@@ -71,7 +71,7 @@ impl Profile {
             MoveSampler { limits: &cell.robots[robot.0].limits, solids, chain, state: ChainState::new(chain) };
         let response = OverrideResponse {
             response_delay: response_delay(cell),
-            rate: Some(cell.laws.laws.override_rate).filter(|r| *r > 0.0).unwrap_or(f64::INFINITY),
+            rate: Some(cell.monitoring.laws.override_rate).filter(|r| *r > 0.0).unwrap_or(f64::INFINITY),
         };
         let mut moves = Vec::new();
         for_each_move(plan, response.response_delay.delay_s, |programmed, step_s, points, held| {
@@ -121,7 +121,7 @@ impl StoppingProfile {
 
 /// Delay of the robots of a cell: one tick until the monitor sees their state, and the reaction time.
 pub(super) fn response_delay(cell: &Cell) -> ResponseDelay {
-    ResponseDelay { delay_s: cell.timing.tick_s + cell.laws.reaction_delay_s, tick_s: cell.timing.tick_s }
+    ResponseDelay { delay_s: cell.timing.tick_s + cell.monitoring.reaction_delay_s, tick_s: cell.timing.tick_s }
 }
 
 /// A move, sampled every `step_s`.

@@ -71,7 +71,7 @@ fn row(text: &mut String, cell: &Cell, check: &EntryCheck) {
 }
 
 fn laws(cell: &Cell) -> String {
-    let laws = &cell.laws;
+    let laws = &cell.monitoring;
     let mut on = vec!["warning zone".to_owned()];
     if laws.stopping_reaction_s.is_some() {
         on.push("stopping distance".into());

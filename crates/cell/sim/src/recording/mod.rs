@@ -9,7 +9,7 @@ mod run_event;
 mod tick_times;
 mod virtual_robot_track;
 
-use elbowroom_cell::CellRegionId;
+use elbowroom_cell::{CellGrid, CellRegionId};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::OverrideReason;
 use elbowroom_spatial::{Pose, Vec3};
@@ -43,6 +43,8 @@ pub struct Recording {
     pub robots: Vec<RobotTrack>,
     /// One per region, in the order of the cell file.
     pub regions: Vec<RegionTrack>,
+    /// The grids of all robots, in file order.
+    pub grids: Vec<CellGrid>,
     /// One per object that moves or is gripped: the moving ones in the order of the cell file, then the others.
     pub objects: Vec<ObjectTrack>,
     /// One per sensor with loaded pictures or clouds.
@@ -131,6 +133,8 @@ pub struct Sample {
     pub governing: Option<GoverningPoint>,
     /// Why the override has this value; its region is an index in [`Recording::regions`].
     pub reason: OverrideReason,
+    /// Digital outputs, bit i is channel i.
+    pub outputs: u64,
 }
 
 /// The point of a robot that is closest to the governing region.

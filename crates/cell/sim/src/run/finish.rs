@@ -35,6 +35,7 @@ impl Simulation<'_> {
             monitored: self.options.apply_override,
             robots,
             regions: self.regions.finish(t_s),
+            grids: cell.monitoring.grids.clone(),
             objects: self.contacts.objects,
             sensors: self.perceived.map(PerceivedObstacles::finish).unwrap_or_default(),
             virtual_robots: self.virtual_robots.into_iter().map(CooperatingRobots::finish).collect(),

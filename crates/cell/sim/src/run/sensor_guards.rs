@@ -72,7 +72,7 @@ impl Simulation<'_> {
         let stale = silent.map(|last| last.sensor.as_str());
         let (_, blocked) = guard.checked();
         let before = hold.reason().cloned();
-        let held = hold.update(t_s, clock, (blocked, stale), (cell.laws.reaction_delay_s, cell.timing.tick_s));
+        let held = hold.update(t_s, clock, (blocked, stale), (cell.monitoring.reaction_delay_s, cell.timing.tick_s));
         if let Some((reason, by)) = held.filter(|_| held != before.as_ref()) {
             let event = if *reason == HoldReason::Stale { RunEvent::Stale } else { RunEvent::Wait };
             journal.event(t_s, *id, by, event);

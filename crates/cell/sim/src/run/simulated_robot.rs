@@ -54,11 +54,14 @@ pub(super) struct Governed {
     pub region: Option<CellRegionId>,
     pub point: Option<VirtualTcp>,
     pub reason: OverrideReason,
+    /// Digital outputs; `None` if they stay as they were.
+    pub outputs: Option<u64>,
 }
 
 impl Governed {
     /// The lack of an input only.
-    pub const STALE: Self = Self { region: None, point: None, reason: OverrideReason::Fault(Fault::Stale) };
+    pub const STALE: Self =
+        Self { region: None, point: None, reason: OverrideReason::Fault(Fault::Stale), outputs: None };
 }
 
 impl<'a> SimulatedRobot<'a> {
@@ -85,7 +88,7 @@ impl<'a> SimulatedRobot<'a> {
             governing: None,
             stop_state: StopState::default(),
             applied: 0.0,
-            delay: OverrideDelay::new(cell.laws.reaction_delay_s),
+            delay: OverrideDelay::new(cell.monitoring.reaction_delay_s),
             track: new_track(robot, setup),
             scratch: ChainState::new(&robot.robot.chain),
         }
@@ -191,6 +194,7 @@ impl<'a> SimulatedRobot<'a> {
             self.present.tcp(&self.scratch).1
         };
         self.track.min_override = self.track.min_override.min(self.applied);
+        let outputs = governed.outputs.or(self.track.samples.last().map(|s| s.outputs)).unwrap_or(0);
         self.track.samples.push(Sample {
             t_s,
             q: state.q.clone(),
@@ -202,6 +206,7 @@ impl<'a> SimulatedRobot<'a> {
             distance_m: governed.point.map(|g| g.distance_m),
             governing: governed.point.map(|g| GoverningPoint { part: g.volume.0, point: g.position }),
             reason: governed.reason,
+            outputs,
         });
     }
 

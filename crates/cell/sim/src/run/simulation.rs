@@ -169,7 +169,7 @@ impl Simulation<'_> {
         let in_cell = |r: RegionId| RegionId(regions[r.0].0);
         let reason = if is_governed { report.reason.with_region(in_cell) } else { OverrideReason::Free };
         let point = region.and(report.governing);
-        robot.record(cell, t_s, state, &Governed { region, point, reason });
+        robot.record(cell, t_s, state, &Governed { region, point, reason, outputs: Some(report.outputs) });
         if let Some(event) = robot.stop_state.update(&robot.clock, robot.applied) {
             let region = region.map_or("", |r| cell.regions[r.0].region.name.as_str());
             let by = robot.hold.reason().map_or(region, |(_, by)| by).to_owned();

@@ -32,7 +32,7 @@ fn lock(client: &Mutex<ControllerClient>) -> MutexGuard<'_, ControllerClient> {
 impl Arm {
     fn new(cell: &Cell, robot: usize, network: &dyn Network) -> Result<Self, Box<dyn Error>> {
         let (keys, name) = (Keys::new(&cell.name), name(robot));
-        let watchdog = Micros::from_seconds(cell.laws.laws.stale_s);
+        let watchdog = Micros::from_seconds(cell.monitoring.laws.stale_s);
         let client = ControllerClient::new(boot_number(), configuration_number(cell)).with_watchdog(watchdog);
         let client = Arc::new(Mutex::new(client));
         let receiver = client.clone();

@@ -60,7 +60,7 @@ pub fn measure(
     rate_hz: u64,
 ) -> Result<Measured, Box<dyn Error>> {
     let (keys, clock) = (Keys::new(&cell.name), Clock::start());
-    let watchdog = Micros::from_seconds(cell.laws.laws.stale_s);
+    let watchdog = Micros::from_seconds(cell.monitoring.laws.stale_s);
     let shared = Arc::new(Mutex::new(Shared {
         client: ControllerClient::new(boot_number(), configuration_number(cell)).with_watchdog(watchdog),
         sent_us: vec![0; REMEMBERED],

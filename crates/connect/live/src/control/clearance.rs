@@ -69,7 +69,7 @@ fn with_only(cell: &Cell, region: &CellRegion) -> Cell {
 /// Joint values at which the robot comes to rest, if it continues at its velocities until the region is in force and
 /// then brakes. A robot without velocities counts as at rest.
 fn at_standstill(cell: &Cell, robot: RobotId, state: &JointState) -> Vec<f64> {
-    let going_on_s = UNTIL_IT_COUNTS_S + cell.laws.reaction_s;
+    let going_on_s = UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s;
     let limits = &cell.robots[robot.0].limits;
     let moved = |((q, limit), qd): ((&f64, &elbowroom_kinematics::JointLimits), &f64)| {
         q + qd * (going_on_s + qd.abs() / (2.0 * limit.stop))
@@ -171,7 +171,7 @@ follow = { robot = "other", frame = "flange" }
             clearances(&cell, &cell.regions[0], &[Some(state), None], 0.0).unwrap()[0].stopping_m
         };
         let braking_m = 0.5 * 0.5 / (2.0 * cell.robots[0].limits[0].stop);
-        let expected = 0.5 * (UNTIL_IT_COUNTS_S + cell.laws.reaction_s) + braking_m;
+        let expected = 0.5 * (UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s) + braking_m;
         assert!((moving(vec![0.5]) - expected).abs() < 1e-9 && (moving(vec![-0.5]) - expected).abs() < 1e-9);
         assert_eq!((moving(vec![0.0]), moving(Vec::new())), (0.0, 0.0));
     }

@@ -7,8 +7,10 @@ mod refusal;
 mod region_changes;
 mod request_handler;
 mod requests;
+mod robot_overview;
 mod routes;
 mod server;
+mod teaching;
 
 pub(crate) use joints_heard::JointsHeard;
 pub(crate) use nodes_heard::NodesHeard;

@@ -132,7 +132,12 @@ impl RequestHandler {
     }
 
     /// Returns the regions with the keys of one region replaced, or without that region if `table` is `None`.
-    fn with(&self, before: &PresentRegions, name: &str, table: Option<&str>) -> Result<PresentRegions, Refusal> {
+    pub(super) fn with(
+        &self,
+        before: &PresentRegions,
+        name: &str,
+        table: Option<&str>,
+    ) -> Result<PresentRegions, Refusal> {
         let versions = &self.parts.versions;
         let edit = RegionEdit { name: name.into(), table: table.map(Into::into) };
         let edits = versions.edited().map_err(refused)?.with(&before.edits, edit);
@@ -205,7 +210,6 @@ impl RequestHandler {
     }
 }
 
-/// Makes the log entry of a change; `is_undone` if the change was made and reverted.
 /// The table of a region that may be changed; a fence has another one.
 fn table_of(edited: &EditedRegions, present: &PresentRegions, name: &str) -> Result<String, Refusal> {
     edited.table(&present.edits, name).ok_or_else(|| {
@@ -214,6 +218,7 @@ fn table_of(edited: &EditedRegions, present: &PresentRegions, name: &str) -> Res
     })
 }
 
+/// Makes the log entry of a change; `is_undone` if the change was made and reverted.
 fn controlled<'a>(
     who: &'a AccessToken,
     action: String,
@@ -246,7 +251,7 @@ fn done_word(action: &str) -> &'static str {
 }
 
 /// Refuses the keys of a region, with the error that the cell file's parser reports.
-fn wrong(error: Diagnostic) -> Refusal {
+pub(super) fn wrong(error: Diagnostic) -> Refusal {
     let what = error.line.map_or_else(|| error.message.clone(), |line| format!("line {line}: {}", error.message));
     let refusal = Refusal::new(400, what);
     match error.hint {
@@ -255,7 +260,7 @@ fn wrong(error: Diagnostic) -> Refusal {
     }
 }
 
-fn refused(why: NoVersion) -> Refusal {
+pub(super) fn refused(why: NoVersion) -> Refusal {
     match why {
         NoVersion::Wrong(error) => wrong(error),
         NoVersion::NotContinued(why) => {

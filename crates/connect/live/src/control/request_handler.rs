@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use elbowroom_cell::access::{AccessToken, Change, ControlEntry, ControlLog, Controlled};
-use elbowroom_cell::{Cell, CellRegion, CellRegionId};
+use elbowroom_cell::{Cell, CellRegion, CellRegionId, configure};
 use elbowroom_monitor::{AccessClass, Life, RegionKind};
 use elbowroom_robot::RobotId;
 use serde::Serialize;
@@ -13,6 +13,7 @@ use super::joints_heard::JointsHeard;
 use super::nodes_heard::NodesHeard;
 use super::refusal::Refusal;
 use super::requests::{Clear, Switch};
+use super::robot_overview::RobotOverview;
 use crate::arbiter_service::{ArbiterService, NotCleared};
 use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
@@ -60,10 +61,19 @@ pub(crate) struct Done {
 pub(crate) struct Overview {
     pub(crate) cell: String,
     pub(crate) checksum: String,
+    /// Units of lengths and angles in the cell file, and in the keys of regions.
+    pub(crate) units: UnitNames,
     /// The revision that a request for a change must name.
     pub(crate) revision: String,
     pub(crate) regions: Vec<RegionOverview>,
     pub(crate) robots: Vec<RobotOverview>,
+}
+
+/// Units as the cell file names them.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct UnitNames {
+    pub(crate) length: &'static str,
+    pub(crate) angle: &'static str,
 }
 
 #[derive(Debug, Clone, Serialize)]
@@ -79,13 +89,6 @@ pub(crate) struct RegionOverview {
     pub(crate) holder: Option<String>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) queue: Vec<String>,
-}
-
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct RobotOverview {
-    pub(crate) name: String,
-    /// Whether its controller is heard.
-    pub(crate) heard: bool,
 }
 
 impl RequestHandler {
@@ -143,16 +146,18 @@ impl RequestHandler {
                 queue: slot.map(|slot| slot.queue.clone()).unwrap_or_default(),
             }
         };
-        let robot = |(r, state): (&elbowroom_cell::CellRobot, Option<_>)| RobotOverview {
-            name: r.name.clone(),
-            heard: state.is_some(),
-        };
+        // Without setups no monitor runs, and nobody knows which tools are attached.
+        let setups = configure::setups(&cell).unwrap_or_default();
+        let states = joints.states();
+        let robots = cell.robots.iter().zip(&states).enumerate();
+        let robots = robots.map(|(i, (r, state))| RobotOverview::new(r, setups.get(i), state.as_ref())).collect();
         Overview {
             cell: cell.name.clone(),
             checksum: cell.approval.checksum.clone(),
+            units: UnitNames { length: cell.units.length.symbol(), angle: cell.units.angle.symbol() },
             revision: revision(&log),
             regions: cell.regions.iter().zip(active).map(region).collect(),
-            robots: cell.robots.iter().zip(joints.states()).map(robot).collect(),
+            robots,
         }
     }
 

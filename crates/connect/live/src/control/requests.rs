@@ -54,6 +54,18 @@ pub(crate) struct Add {
     pub(crate) note: Option<String>,
 }
 
+/// Asks for the distance of a robot from a region that is being taught. It changes nothing.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Taught {
+    /// The robot.
+    pub(crate) robot: String,
+    /// Name of the region.
+    pub(crate) region: String,
+    /// Keys of the region as in the cell file, or its table `[region.NAME]`.
+    pub(crate) toml: String,
+}
+
 /// Removes a region.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]

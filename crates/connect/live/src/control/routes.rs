@@ -35,6 +35,7 @@ pub(crate) fn routes(handler: RequestHandler, tokens: AccessTokens, hosts: Hosts
     let shared = Arc::new(Shared { handler, tokens, hosts });
     Router::new()
         .route("/regions", get(regions).fallback(only("GET")))
+        .route("/distance", post(distance).fallback(only("POST")))
         .route("/switch", post(switch).fallback(only("POST")))
         .route("/move", post(move_region).fallback(only("POST")))
         .route("/add", post(add).fallback(only("POST")))
@@ -43,7 +44,7 @@ pub(crate) fn routes(handler: RequestHandler, tokens: AccessTokens, hosts: Hosts
         .fallback(|| async {
             answer(
                 &Refusal::new(404, "not here")
-                    .help("GET /regions, POST /switch, /move, /add, /remove or /clear (docs/control.md)"),
+                    .help("GET /regions, POST /distance, /switch, /move, /add, /remove or /clear (docs/control.md)"),
             )
         })
         .layer(DefaultBodyLimit::max(MAX_BODY))
@@ -81,6 +82,18 @@ async fn regions(State(shared): State<Arc<Shared>>, headers: HeaderMap) -> Respo
     overview.map_or_else(|_| answer(&broken()), |overview| json(StatusCode::OK, &overview))
 }
 
+async fn distance(
+    State(shared): State<Arc<Shared>>,
+    headers: HeaderMap,
+    body: Result<Bytes, BytesRejection>,
+) -> Response {
+    let asked = tokio::task::spawn_blocking(move || {
+        holder(&shared, &headers)?;
+        shared.handler.distance(&request(&headers, body)?)
+    });
+    answer_of(asked.await)
+}
+
 async fn switch(state: State<Arc<Shared>>, headers: HeaderMap, body: Result<Bytes, BytesRejection>) -> Response {
     change(state, headers, body, RequestHandler::switch).await
 }
@@ -114,7 +127,11 @@ async fn change<R: DeserializeOwned + Send + 'static>(
         let request = request(&headers, body)?;
         make(&shared.handler, who, &at, &request)
     });
-    match made.await {
+    answer_of(made.await)
+}
+
+fn answer_of<A: Serialize>(result: Result<Result<A, Refusal>, tokio::task::JoinError>) -> Response {
+    match result {
         Ok(Ok(done)) => json(StatusCode::OK, &done),
         Ok(Err(refusal)) => answer(&refusal),
         // The handler panicked: the service continues, and the client learns that the result is unknown.

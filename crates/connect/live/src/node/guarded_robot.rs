@@ -176,7 +176,7 @@ impl GuardedRobot {
 
     /// Whether the joint values are too old, or none have arrived yet.
     pub(super) fn is_stale(&self) -> bool {
-        self.own.age().is_none_or(|age| age > Micros::from_seconds(self.cell.laws.laws.stale_s))
+        self.own.age().is_none_or(|age| age > Micros::from_seconds(self.cell.monitoring.laws.stale_s))
     }
 
     /// Computes the override for the joint values that arrived last. `now` is on this process's clock.

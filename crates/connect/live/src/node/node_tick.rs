@@ -59,7 +59,7 @@ impl NodeTick {
         recorder: Option<TickRecorder>,
     ) -> Self {
         let followed = (0..cell.robots.len()).map(|r| follows(&setup, RobotId(r))).collect();
-        let (inbox, stale) = (Inbox::new(checksum, followed, &cell), cell.laws.laws.stale_s);
+        let (inbox, stale) = (Inbox::new(checksum, followed, &cell), cell.monitoring.laws.stale_s);
         let guarded = GuardedRobot::new(cell, setup, monitor, checksum, recorder);
         Self {
             inbox: Arc::new(inbox),

@@ -62,7 +62,7 @@ impl RosController {
         let ControllerParts { cell, settings, session, network, clock, on_event } = parts;
         let (clock, keys) = (*clock, Keys::new(&cell.name));
         let names = JointNames::new(cell, robot, &settings.robots);
-        let oldest = Micros::from_seconds(cell.laws.laws.stale_s);
+        let oldest = Micros::from_seconds(cell.monitoring.laws.stale_s);
         let client = ControllerClient::new(boot_number(), configuration_number(cell)).with_watchdog(oldest);
         let client: Client = Arc::new(Mutex::new(client));
         let input = Arc::new(Mutex::new(Input {

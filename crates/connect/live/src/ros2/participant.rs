@@ -114,7 +114,7 @@ impl Parts {
         network: &Arc<dyn Network>,
     ) -> Result<Vec<AnsweredFactor>, NetworkError> {
         let Self { cell, settings, guarded, clock, .. } = self;
-        let (keys, oldest) = (Keys::new(&cell.name), Micros::from_seconds(cell.laws.laws.stale_s));
+        let (keys, oldest) = (Keys::new(&cell.name), Micros::from_seconds(cell.monitoring.laws.stale_s));
         let names = guarded.iter().map(|robot| &cell.robots[robot.0].name);
         let start = |name: &String| {
             let topic = Topic::of::<SpeedScalingFactor>(&Ros2Robot::of(name).speed_scaling, settings.distribution);

@@ -4,10 +4,11 @@
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Guards, Laws, Life, Monitor, Part, Presence, Region, RegionKind, SlotId,
-    SourceId, SourceLimits, SourceSpec, StoppingSettings, Volume,
+    Configuration, ConfigurationParts, Grid, GridAxis, GridSpace, Guards, Laws, Life, Monitor, Part, Presence, Region,
+    RegionKind, SlotId, SourceId, SourceLimits, SourceSpec, StoppingSettings, Volume,
 };
 use elbowroom_ros2::msgs::elbowroom_msgs as msgs;
+use elbowroom_spatial::Pose;
 
 use crate::{ConfigurationDefect, solid};
 
@@ -41,6 +42,7 @@ fn encode(robot: u32, configuration: &Configuration) -> msgs::MonitorConfigurati
         period_s: stopping.map_or(0.0, |s| s.period_s),
         joint_deceleration: stopping.map_or_else(Vec::new, |s| s.joint_deceleration.clone()),
         joint_acceleration: stopping.map_or_else(Vec::new, |s| s.joint_acceleration.clone()),
+        grids: configuration.grids().iter().map(grid).collect(),
     }
 }
 
@@ -142,6 +144,24 @@ fn source(source: &SourceSpec) -> msgs::Source {
     }
 }
 
+fn grid(grid: &Grid) -> msgs::Grid {
+    let Grid { name, space, axes, output, hysteresis } = grid;
+    let (frame_in_world, joints) = match space {
+        GridSpace::Tcp { frame_in_world } => (*frame_in_world, Vec::new()),
+        GridSpace::Joints(joints) => (Pose::IDENTITY, joints.iter().map(|j| index(*j)).collect()),
+    };
+    msgs::Grid {
+        name: name.clone(),
+        frame_in_world: solid::pose_values(&frame_in_world),
+        joints,
+        from: axes.iter().map(|a| a.from).collect(),
+        to: axes.iter().map(|a| a.to).collect(),
+        count: axes.iter().map(|a| a.count).collect(),
+        output: *output,
+        hysteresis: *hysteresis,
+    }
+}
+
 /// Converts an index; no index in a configuration comes near the limit.
 fn index(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
@@ -171,12 +191,13 @@ pub(crate) fn decode(message: &msgs::MonitorConfiguration) -> Result<Configurati
         volumes: message.volumes.iter().map(read_volume).collect::<Result<_, _>>()?,
         regions: message.regions.iter().map(read_region).collect::<Result<_, _>>()?,
         sources: message.sources.iter().map(read_source).collect::<Result<_, _>>()?,
+        grids: message.grids.iter().map(read_grid).collect::<Result<_, _>>()?,
         laws,
     };
     Ok(Configuration::new(parts)?)
 }
 
-fn pose(values: &[f64; 12], what: &str) -> Result<elbowroom_spatial::Pose, ConfigurationDefect> {
+fn pose(values: &[f64; 12], what: &str) -> Result<Pose, ConfigurationDefect> {
     solid::pose_of(values).ok_or_else(|| ConfigurationDefect::Pose(what.to_owned()))
 }
 
@@ -263,6 +284,21 @@ fn read_source(message: &msgs::Source) -> Result<SourceSpec, ConfigurationDefect
     };
     let limits = SourceLimits { speed_m_s: message.speed_m_s, turn_rad_s: message.turn_rad_s, wrap_m };
     Ok(SourceSpec { name: message.name.clone(), limits })
+}
+
+fn read_grid(message: &msgs::Grid) -> Result<Grid, ConfigurationDefect> {
+    let msgs::Grid { name, frame_in_world, joints, from, to, count, output, hysteresis } = message;
+    let frame_in_world = pose(frame_in_world, name)?;
+    let space = match &joints[..] {
+        [] => GridSpace::Tcp { frame_in_world },
+        joints => GridSpace::Joints(joints.iter().map(|j| *j as usize).collect()),
+    };
+    if from.len() != to.len() || to.len() != count.len() {
+        return Err(ConfigurationDefect::Axes(name.clone()));
+    }
+    let ends = from.iter().zip(to).zip(count);
+    let axes = ends.map(|((from, to), count)| GridAxis { from: *from, to: *to, count: *count }).collect();
+    Ok(Grid { name: name.clone(), space, axes, output: *output, hysteresis: *hysteresis })
 }
 
 /// Reads the value of an optional field.

@@ -27,6 +27,9 @@ fn of_robot(robot: &RobotStatus, checksum: &str) -> DiagnosticStatus {
         values.push(KeyValue::new("distance_m", point.distance_m));
     }
     values.push(KeyValue::new("outputs", format!("{:#x}", robot.outputs)));
+    for (name, cell) in &robot.grids {
+        values.push(KeyValue::new(&format!("grid {name}"), cell));
+    }
     let exchange = robot.exchange.iter().map(|(region, state)| KeyValue::new(&format!("exchange {region}"), state));
     values.extend(exchange);
     values.push(KeyValue::new("checksum", checksum));

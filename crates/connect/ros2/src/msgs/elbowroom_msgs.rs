@@ -128,6 +128,28 @@ message! {
 }
 
 message! {
+    /// A division of the working area into numbered cells.
+    Grid = "elbowroom_msgs/msg/Grid" {
+        /// Its name.
+        name: String,
+        /// Frame in the world in which the tool centre point counts.
+        frame_in_world: [f64; 12],
+        /// The joints whose values count instead, as indices; empty if the point counts.
+        joints: Vec<u32>,
+        /// Low end of each axis, m or rad.
+        from: Vec<f64>,
+        /// High end of each axis, m or rad.
+        to: Vec<f64>,
+        /// Divisions of each axis.
+        count: Vec<u32>,
+        /// The digital output with the lowest bit.
+        output: u8,
+        /// How far beyond its border a cell is left, m or rad.
+        hysteresis: f64,
+    }
+}
+
+message! {
     /// The complete configuration of one robot's monitor.
     MonitorConfiguration = "elbowroom_msgs/msg/MonitorConfiguration" {
         /// Index of the robot in the recording.
@@ -170,6 +192,8 @@ message! {
         joint_deceleration: Vec<f64>,
         /// Accelerations, rad/s² or m/s².
         joint_acceleration: Vec<f64>,
+        /// The grids whose occupied cell is on digital outputs.
+        grids: Vec<Grid>,
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 
 use crate::region::args::Class;
+use crate::taught_shape::TaughtShapeArgs;
 
 /// Commands for a running cell (docs/control.md).
 #[derive(Debug, Subcommand)]
@@ -21,6 +22,8 @@ pub(crate) enum ControlCommand {
     Move(MoveArgs),
     /// Add a region
     Add(AddArgs),
+    /// Teach a region at a running robot, and compare it with the obstacle
+    Teach(TeachAtRobotArgs),
     /// Remove a temporary region
     Remove(RemoveArgs),
     /// Declare that you have seen a silent robot at rest outside its exchange regions
@@ -133,6 +136,39 @@ pub(crate) struct AddArgs {
     pub(crate) service: ServiceArgs,
     /// A comment for the log
     #[arg(long, value_name = "TEXT")]
+    pub(crate) note: Option<String>,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The points are those of `elbowroom teach`: move the robot to each, and press Enter. Then the distance of the
+robot from the region is shown while it moves: a robot that touches the obstacle should be 0 from the region.
+
+Examples:
+  elbowroom control teach trolley --robot left --shape box --secret panel.secret >> cell.toml
+  elbowroom control teach trolley --robot left --shape box --warning 200 --add --secret panel.secret"
+)]
+pub(crate) struct TeachAtRobotArgs {
+    /// Name of the region
+    pub(crate) region: String,
+    /// The robot that is moved to the points
+    #[arg(long)]
+    pub(crate) robot: String,
+    #[command(flatten)]
+    pub(crate) shape: TaughtShapeArgs,
+    /// Make a permanent region instead of a temporary one
+    #[arg(long)]
+    pub(crate) permanent: bool,
+    /// Add the region to the running cell, too
+    #[arg(long)]
+    pub(crate) add: bool,
+    /// Add the region switched off; temporary regions only
+    #[arg(long, requires = "add")]
+    pub(crate) off: bool,
+    #[command(flatten)]
+    pub(crate) service: ServiceArgs,
+    /// A comment for the log
+    #[arg(long, value_name = "TEXT", requires = "add")]
     pub(crate) note: Option<String>,
 }
 

@@ -51,6 +51,11 @@ impl Client {
         self.ask("POST", path, &headers, Some(request))
     }
 
+    /// Asks for the distance of a robot from a region that the cell does not have yet.
+    pub(crate) fn distance(&self, request: &Value) -> Result<Value, Failure> {
+        self.ask("POST", "/distance", "Content-Type: application/json\r\n", Some(request))
+    }
+
     fn ask(&self, method: &str, path: &str, headers: &str, body: Option<&Value>) -> Result<Value, Failure> {
         let (address, secret) = (&self.address, &self.secret);
         let body = body.map(Value::to_string).unwrap_or_default();

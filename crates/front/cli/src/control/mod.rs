@@ -2,6 +2,7 @@
 
 pub(crate) mod args;
 mod client;
+mod teach;
 mod transport;
 
 use std::fmt::Write as _;
@@ -38,6 +39,15 @@ pub(crate) fn control(command: &ControlCommand) -> Result<ExitStatus, Failure> {
             let toml = read(&args.file)?;
             let request = json!({ "region": args.region, "toml": toml, "active": !args.off, "note": args.note });
             done(&Client::new(&args.service)?.change("/add", &request)?)?;
+        }
+        ControlCommand::Teach(args) => {
+            let client = Client::new(&args.service)?;
+            let toml = teach::Teacher::new(args, &client)?.teach()?;
+            if args.add {
+                let request = json!({ "region": args.region, "toml": toml, "active": !args.off, "note": args.note });
+                done(&client.change("/add", &request)?)?;
+            }
+            print(&format!("\n{toml}"))?;
         }
         ControlCommand::Remove(args) => {
             let request = json!({ "region": args.region, "note": args.note });

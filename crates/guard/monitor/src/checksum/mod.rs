@@ -5,10 +5,11 @@ use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
 use sha2::{Digest, Sha256};
 
-use crate::{Configuration, Laws, Life, Part, Presence, Region, RegionKind, SourceSpec, Volume};
+use crate::{Configuration, Grid, GridSpace, Laws, Life, Part, Presence, Region, RegionKind, SourceSpec, Volume};
 
 impl Configuration {
-    /// SHA-256 (hex) over all bits that determine an override: chain, volumes, regions, sources and laws. Equal configurations
+    /// SHA-256 (hex) over all bits that determine an override or an output: chain, volumes, regions, sources,
+    /// laws and grids. Equal configurations
     /// have equal checksums on every machine; a change of any number changes it.
     pub fn checksum(&self) -> String {
         let mut hasher = Hasher(Sha256::new());
@@ -16,16 +17,18 @@ impl Configuration {
         hasher.list(&self.regions, Hasher::region);
         hasher.list(&self.sources, Hasher::source);
         hasher.laws(&self.laws);
+        hasher.grids(&self.grids);
         hasher.hex()
     }
 
-    /// SHA-256 (hex) over chain, volumes and laws. Regions, sources and the objects that programs grip are left out:
+    /// SHA-256 (hex) over chain, volumes, laws and grids. Regions, sources and the objects that programs grip are left out:
     /// they are not parts of the robot.
     pub fn robot_checksum(&self) -> String {
         let mut hasher = Hasher(Sha256::new());
         let own: Vec<&Volume> = self.volumes.iter().filter(|v| !v.is_gripped_object()).collect();
         hasher.robot(self, &own);
         hasher.laws(&self.laws);
+        hasher.grids(&self.grids);
         hasher.hex()
     }
 }
@@ -213,6 +216,33 @@ impl Hasher {
         self.number(source.limits.turn_rad_s);
         self.flag(source.limits.wrap_m.is_some());
         self.vec3(source.limits.wrap_m.unwrap_or_default());
+    }
+
+    /// Configurations without grids hash as before there were any, so that their seals stay valid.
+    fn grids(&mut self, grids: &[Grid]) {
+        if grids.is_empty() {
+            return;
+        }
+        self.list(grids, |s, grid| {
+            s.text(&grid.name);
+            match &grid.space {
+                GridSpace::Tcp { frame_in_world } => {
+                    s.tag(0);
+                    s.pose(frame_in_world);
+                }
+                GridSpace::Joints(joints) => {
+                    s.tag(1);
+                    s.list(joints, |s, joint| s.count(*joint));
+                }
+            }
+            s.list(&grid.axes, |s, axis| {
+                s.number(axis.from);
+                s.number(axis.to);
+                s.count(axis.count as usize);
+            });
+            s.tag(grid.output);
+            s.number(grid.hysteresis);
+        });
     }
 
     fn laws(&mut self, laws: &Laws) {

@@ -7,7 +7,8 @@ use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shap
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::{
-    Configuration, Guards, Laws, Life, Part, Presence, Region, RegionKind, SlotId, SourceId, StoppingSettings, Volume,
+    Configuration, Grid, GridAxis, GridSpace, Guards, Laws, Life, Part, Presence, Region, RegionKind, SlotId, SourceId,
+    StoppingSettings, Volume,
 };
 
 type Change = fn(&mut Configuration);
@@ -52,7 +53,13 @@ fn configuration() -> Configuration {
         regions: vec![region.clone(), Region { name: "s".into(), ..region }],
         sources: vec!["belt".into(), "cart".into()],
         laws: Laws { stopping_distance: Some(stopping), ..Laws::default() },
+        grids: vec![grid(GridSpace::Joints(vec![0, 1])), grid(GridSpace::Tcp { frame_in_world: Pose::IDENTITY })],
     }
+}
+
+fn grid(space: GridSpace) -> Grid {
+    let axis = |count: u32| GridAxis { from: -1.0, to: 1.0, count };
+    Grid { name: "g".into(), space, axes: vec![axis(4), axis(3)], output: 8, hysteresis: 0.01 }
 }
 
 /// The chain again, with one joint changed.
@@ -72,7 +79,7 @@ fn turned() -> Pose {
 
 fn top() -> Vec<Named> {
     // No `..`: a new field of a configuration must be added here, and to the changes below.
-    let Configuration { robot: _, base_in_world: _, chain: _, volumes: _, regions: _, sources: _, laws: _ } =
+    let Configuration { robot: _, base_in_world: _, chain: _, volumes: _, regions: _, sources: _, laws: _, grids: _ } =
         configuration();
     vec![
         ("robot", |c| c.robot.push('x')),
@@ -188,6 +195,25 @@ fn of_region() -> Vec<Named> {
     ]
 }
 
+fn of_grids() -> Vec<Named> {
+    let Grid { name: _, space: _, axes: _, output: _, hysteresis: _ } = grid(GridSpace::Joints(vec![]));
+    vec![
+        ("grid name", |c| c.grids[0].name.push('x')),
+        ("grid of another joint", |c| c.grids[0].space = GridSpace::Joints(vec![0, 0])),
+        ("grid of joints exchanged", |c| c.grids[0].space = GridSpace::Joints(vec![1, 0])),
+        ("grid of the point", |c| c.grids[0].space = c.grids[1].space.clone()),
+        ("grid moved", |c| c.grids[1].space = GridSpace::Tcp { frame_in_world: moved() }),
+        ("grid from", |c| c.grids[0].axes[1].from += 1e-9),
+        ("grid to", |c| c.grids[0].axes[1].to += 1e-9),
+        ("grid cells", |c| c.grids[0].axes[1].count += 1),
+        ("grid axes exchanged", |c| c.grids[0].axes.reverse()),
+        ("grid output", |c| c.grids[0].output += 1),
+        ("grid hysteresis", |c| c.grids[0].hysteresis += 1e-9),
+        ("grid removed", |c| c.grids.truncate(1)),
+        ("no grids", |c| c.grids.clear()),
+    ]
+}
+
 fn of_laws() -> Vec<Named> {
     fn stopping(c: &mut Configuration) -> &mut StoppingSettings {
         c.laws.stopping_distance.as_mut().unwrap()
@@ -239,7 +265,7 @@ fn of_shapes() -> Vec<Named> {
 
 #[test]
 fn a_change_of_any_field_changes_the_checksum() {
-    let changes = [top(), of_chain(), of_volume(), of_region(), of_laws(), of_shapes()].concat();
+    let changes = [top(), of_chain(), of_volume(), of_region(), of_laws(), of_grids(), of_shapes()].concat();
     let base = configuration().checksum();
     assert_eq!(base, configuration().checksum());
     let mut by_checksum = HashMap::from([(base, "no change")]);

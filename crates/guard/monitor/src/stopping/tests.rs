@@ -42,6 +42,7 @@ fn configuration(kinds: &[JointKind], flat: bool, stopping: StoppingSettings) ->
         volumes: vec![volume],
         regions: Vec::new(),
         sources: Vec::new(),
+        grids: vec![],
         laws: Laws { stopping_distance: Some(stopping), ..Laws::default() },
     })
     .unwrap()

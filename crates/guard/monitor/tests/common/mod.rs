@@ -81,6 +81,7 @@ pub fn parts(chain: Chain, volumes: Vec<Volume>, regions: Vec<Region>) -> Config
         volumes,
         regions,
         sources: vec![],
+        grids: vec![],
         laws: Laws::default(),
     }
 }

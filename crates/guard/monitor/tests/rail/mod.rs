@@ -51,6 +51,7 @@ pub fn configuration(laws: Laws) -> Configuration {
         volumes: vec![Volume::tcp(LinkId(1), Vec3::ZERO)],
         regions: vec![region.kind(RegionKind::Exchange { slot: SLOT }).life(Life::Temporary)],
         sources: vec![],
+        grids: vec![],
         laws,
     };
     Configuration::new(parts).unwrap()

@@ -1,6 +1,7 @@
 //! The keys of the cell file: the readers accept these, and the tables of `docs/cell-file.md` are made of them.
 
 mod fixtures;
+mod grids;
 mod key;
 mod model;
 mod motion;
@@ -10,6 +11,7 @@ mod sensors;
 mod settings;
 
 pub(super) use fixtures::*;
+pub(super) use grids::*;
 pub(super) use key::names;
 pub(super) use model::*;
 pub(super) use motion::*;

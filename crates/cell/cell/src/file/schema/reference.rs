@@ -1,7 +1,7 @@
 //! The tables of `docs/cell-file.md`.
 
 use super::key::{Key, Variant};
-use super::{fixtures, model, motion, regions, sensors, settings};
+use super::{fixtures, grids, model, motion, regions, sensors, settings};
 
 /// Lists of keys, as the document calls them.
 const KEYS: &[(&str, &[Key])] = &[
@@ -19,6 +19,7 @@ const KEYS: &[(&str, &[Key])] = &[
     ("keys of [region.NAME]", regions::REGION),
     ("keys of [fence.NAME]", regions::FENCE),
     ("keys of a gate", regions::GATE),
+    ("keys of [grid.NAME]", grids::GRID),
     ("keys of [encoder.NAME]", regions::ENCODER),
     ("keys of [fixture.NAME]", fixtures::FIXTURE),
     ("keys of a guide", fixtures::GUIDE),

@@ -38,7 +38,7 @@ pub(in crate::file) const REGION_SHAPES: &[Variant] = &[
 /// Walls of a fence, beside the keys of a region.
 #[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const FENCE: &[Key] = &[
-    key("corners", "list of `[x, y]`", "required, three or more", "the polygon around what is free, in the world; the walls are outside of it"),
+    key("corners", "list of `[x, y]`", "required, 3 to 500", "the polygon around what is free, in the world; the walls are outside of it"),
     key("height", "length", "required", "of the walls"),
     key("floor", "length", "0", "height of their lower edge in the world"),
     key("thickness", "length", "50 mm", "of the walls"),

@@ -15,6 +15,7 @@ pub(in crate::file) const TOP: &[Key] = &[
     key("scene", "tables", "none", "objects of planning scenes: [`[scene.NAME]`](#scenename)"),
     key("region", "tables", "none", "regions: [`[region.NAME]`](#regionname)"),
     key("fence", "tables", "none", "fences, which are regions: [`[fence.NAME]`](#fencename)"),
+    key("grid", "tables", "none", "grids of the working area: [`[grid.NAME]`](#gridname)"),
     key("encoder", "tables", "none", "conveyors: [`[encoder.NAME]`](#encodername)"),
     key("fixture", "tables", "none", "virtual fixtures: [`[fixture.NAME]`](#fixturename)"),
     key("force", "tables", "none", "forces between guided tools and their surroundings: [`[force.NAME]`](#forcename)"),

@@ -1,0 +1,172 @@
+//! `elbowroom control teach`: a region taught at a running robot, compared with the real obstacle before it is used.
+
+use std::io::{BufRead as _, IsTerminal as _, Write as _};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::Duration;
+
+use elbowroom::cell::Units;
+use elbowroom::monitor::Region;
+use elbowroom::spatial::Vec3;
+use elbowroom::spatial::units::{AngleUnit, LengthUnit};
+use serde_json::{Value, json};
+
+use super::args::TeachAtRobotArgs;
+use super::client::Client;
+use crate::output::{Failure, note};
+use crate::taught_region::{TaughtRegion, points_of};
+
+/// Time between two questions where the robot is.
+const PERIOD: Duration = Duration::from_millis(200);
+
+/// A person at a robot, and the service that knows where the robot is.
+pub(super) struct Teacher<'a> {
+    args: &'a TeachAtRobotArgs,
+    client: &'a Client,
+    units: Units,
+    /// What is typed, line by line.
+    typed: Receiver<String>,
+    is_terminal: bool,
+}
+
+impl<'a> Teacher<'a> {
+    /// Listens to standard input.
+    pub(super) fn new(args: &'a TeachAtRobotArgs, client: &'a Client) -> Result<Self, Failure> {
+        let units = units(&client.regions()?)?;
+        let (send, typed) = channel();
+        std::thread::spawn(move || {
+            let lines = std::io::stdin().lock().lines().map_while(Result::ok);
+            for line in lines {
+                if send.send(line).is_err() {
+                    break;
+                }
+            }
+        });
+        Ok(Self { args, client, units, typed, is_terminal: std::io::stderr().is_terminal() })
+    }
+
+    /// The table of the region, once the person has taught and accepted it.
+    pub(super) fn teach(&self) -> Result<String, Failure> {
+        let shape = &self.args.shape;
+        let (name, is_temporary) = (self.args.region.as_str(), !self.args.permanent);
+        let taught = TaughtRegion { name, shape, units: self.units, is_temporary };
+        taught.check_height()?;
+        // Refused before anybody moves a robot.
+        self.place()?;
+        loop {
+            let points = self.points()?;
+            let made = taught.region(&points).and_then(|r| taught.built(&r, &points).map(|built| (r, built)));
+            let (region, built): (Region, Vec<String>) = match made {
+                Ok(made) => made,
+                Err(why) => {
+                    note(format_args!("{why}: teach the points again"));
+                    continue;
+                }
+            };
+            built.iter().for_each(note);
+            let text = taught.toml(&region);
+            taught.check(&text, Path::new("the taught points"))?;
+            if self.is_accepted(&text)? {
+                return Ok(text);
+            }
+        }
+    }
+
+    /// The places to which the person moves the robot.
+    fn points(&self) -> Result<Vec<Vec3>, Failure> {
+        let (robot, wanted) = (&self.args.robot, points_of(self.args.shape.shape));
+        let what = if self.args.shape.flange { "flange" } else { "TCP" };
+        let mut points = Vec::new();
+        for (i, point) in wanted.iter().enumerate() {
+            let number = format!("{} of {}", i + 1, wanted.len());
+            note(format_args!("{number}: move the {what} of {robot} to {point}, then press Enter (q ends)"));
+            self.wait(|| self.place().map(|p| format!("{what} at {}", self.shown(p))))?;
+            let at = self.place()?;
+            note(format_args!("{number}: {point} at {}", self.shown(at)));
+            points.push(at);
+        }
+        Ok(points)
+    }
+
+    /// Shows the distance of the robot from the region, so that it can be compared with the obstacle; returns whether the
+    /// person takes the region.
+    fn is_accepted(&self, text: &str) -> Result<bool, Failure> {
+        let robot = &self.args.robot;
+        let request = json!({ "robot": robot, "region": self.args.region, "toml": text });
+        let distance = || {
+            let answer = self.client.distance(&request)?;
+            Ok(match answer["distance_m"].as_f64() {
+                Some(metres) => format!("{robot} is {} from the region", self.length(metres)),
+                None => format!("{robot} is not heard"),
+            })
+        };
+        note("compare it with the obstacle: move the robot there and see its distance from the region");
+        note("Enter takes the region, r teaches it again, q ends");
+        note(distance()?);
+        let typed = self.wait(distance)?;
+        note(distance()?);
+        Ok(typed != "r")
+    }
+
+    /// Waits for a line; meanwhile a terminal shows what is so now.
+    fn wait(&self, now: impl Fn() -> Result<String, Failure>) -> Result<String, Failure> {
+        loop {
+            match self.typed.recv_timeout(PERIOD) {
+                Ok(line) => match line.trim() {
+                    "q" => return Err(Failure::Wrong("nothing was taught: ended by q".into())),
+                    other => return Ok(other.to_owned()),
+                },
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(Failure::Wrong("nothing was taught: the standard input has ended".into()));
+                }
+                Err(RecvTimeoutError::Timeout) if self.is_terminal => {
+                    let text = now()?;
+                    // A failed write is ignored, as for all messages.
+                    let _ = write!(std::io::stderr().lock(), "\r\x1b[K{text}\r");
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        }
+    }
+
+    /// Where the TCP or the flange of the robot is, in the world.
+    fn place(&self) -> Result<Vec3, Failure> {
+        let document = self.client.regions()?;
+        let robots = document["robots"].as_array().map_or(&[][..], Vec::as_slice);
+        let name = &self.args.robot;
+        let robot = robots.iter().find(|r| r["name"] == name.as_str()).ok_or_else(|| {
+            let names: Vec<&str> = robots.iter().filter_map(|r| r["name"].as_str()).collect();
+            Failure::Wrong(format!("there is no robot `{name}`\n  write: --robot with one of {}", names.join(", ")))
+        })?;
+        let frame = &robot[if self.args.shape.flange { "flange" } else { "tcp" }];
+        let coordinate = |i: usize| frame["position_m"][i].as_f64();
+        let [Some(x), Some(y), Some(z)] = [0, 1, 2].map(coordinate) else {
+            let help = "connect its controller, or `elbowroom live CELL --simulate` for a try";
+            return Err(Failure::Wrong(format!("{name}: its controller is not heard\n  write: {help}")));
+        };
+        Ok(Vec3::new(x, y, z))
+    }
+
+    fn shown(&self, p: Vec3) -> String {
+        let per_unit = self.units.length.to_metres(1.0);
+        let [x, y, z] = p.to_array().map(|v| ((v / per_unit) * 1e4).round() / 1e4);
+        format!("[{x}, {y}, {z}] {}", self.units.length.symbol())
+    }
+
+    fn length(&self, metres: f64) -> String {
+        let value = metres / self.units.length.to_metres(1.0);
+        format!("{} {}", (value * 1e4).round() / 1e4, self.units.length.symbol())
+    }
+}
+
+/// The units of the cell file, as the service names them.
+fn units(document: &Value) -> Result<Units, Failure> {
+    let lengths = [LengthUnit::Metre, LengthUnit::Millimetre];
+    let angles = [AngleUnit::Radian, AngleUnit::Degree];
+    let named = document["units"]["length"].as_str().zip(document["units"]["angle"].as_str());
+    let found = named.and_then(|(length, angle)| {
+        let length = lengths.into_iter().find(|u| u.symbol() == length)?;
+        Some(Units { length, angle: angles.into_iter().find(|u| u.symbol() == angle)? })
+    });
+    found.ok_or_else(|| Failure::Wrong("the service does not name its units: it is of another version".into()))
+}
