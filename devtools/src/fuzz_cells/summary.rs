@@ -222,14 +222,12 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
                 region(g)
             )
         }
-        Finding::TwoInside { region: g, robots: [a, b], t_s } => {
-            format!(
-                "robots {} and {} were both inside the exchange region {} at {t_s:.4} s",
-                robot(a),
-                robot(b),
-                region(g)
-            )
-        }
+        Finding::TwoInside { region: g, robots: [a, b], t_s } => format!(
+            "robots {} and {} were both inside the exchange region {} at {t_s:.4} s",
+            robot(a),
+            robot(b),
+            region(g)
+        ),
         Finding::SilentDeadlock { robots } => format!(
             "robots {} wait for one another for ever, and the run does not report it",
             robots.iter().map(robot).collect::<Vec<_>>().join(", ")
