@@ -73,7 +73,12 @@ fn what_is_no_grid_is_refused_with_its_line() {
         (BOX.replace("-400]", "400]"), 3, "has no volume", "differ in x, y and z"),
         (BOX.replace("output = 4", "output = 61"), 5, "numbers up to 10 take 4 outputs", "output = 60"),
         (BOX.replace("cells = [5, 2, 1]", many) + "hysteresis = 0\n", 4, "makes 90000 cells", "fewer divisions"),
-        (format!("{BOX}hysteresis = 150\n"), 6, "is 150 mm, more than half of a cell of 200 mm", "a smaller `hysteresis`"),
+        (
+            format!("{BOX}hysteresis = 150\n"),
+            6,
+            "is 150 mm, more than half of a cell of 200 mm",
+            "a smaller `hysteresis`",
+        ),
         (format!("{BOX}robots = []\n"), 6, "is empty", "leave it out"),
         (format!("{BOX}robots = [\"b\"]\n"), 6, "the robot \"b\"", "a"),
         (format!("{BOX}{region}"), 1, "region `x` has one of its outputs 4 to 7", "another `output`"),

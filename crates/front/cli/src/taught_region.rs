@@ -53,7 +53,9 @@ impl TaughtRegion<'_> {
         };
         if !fits {
             let what = format!("--shape {} needs {}", word(shape), height_of(shape));
-            return Err(Failure::Wrong(format!("{what}\n  write: --shape box3 --height 300, or another shape without --height")));
+            return Err(Failure::Wrong(format!(
+                "{what}\n  write: --shape box3 --height 300, or another shape without --height"
+            )));
         }
         let any = Region::sphere(self.name, Vec3::ZERO, 1.0);
         self.check(&self.toml(&any), Path::new("the arguments"))

@@ -6,6 +6,7 @@ mod check;
 mod common;
 mod configurations;
 mod crate_example;
+mod entry;
 mod fixtures;
 mod imports;
 mod inspect;

@@ -91,8 +91,7 @@ impl GridAxis {
     /// The division of a coordinate: the former one as long as the coordinate is at most the hysteresis beyond it.
     fn place(&self, Coordinate { at, turn }: Coordinate, former: Option<u32>, hysteresis: f64) -> Option<u32> {
         let border = |place: u32| self.from + f64::from(place) * self.step();
-        let holds =
-            |place: u32, at: f64| at >= border(place) - hysteresis && at <= border(place + 1) + hysteresis;
+        let holds = |place: u32, at: f64| at >= border(place) - hysteresis && at <= border(place + 1) + hysteresis;
         let stays = |place: &u32| [at, at - turn, at + turn].iter().any(|at| holds(*place, *at));
         if let Some(place) = former.filter(stays) {
             return Some(place);
@@ -198,7 +197,9 @@ impl Grid {
                 }
                 let is_long = |(j, axis): &(&usize, &GridAxis)| turns[**j] && axis.to - axis.from > TAU + ROUNDING;
                 let long = joints.iter().zip(&self.axes).find(is_long);
-                long.map(|_| "more than a turn of a joint that turns without end: its values count modulo a turn".into())
+                long.map(|_| {
+                    "more than a turn of a joint that turns without end: its values count modulo a turn".into()
+                })
             }
         }
     }
@@ -271,7 +272,10 @@ mod tests {
             cell
         };
         for turns in [0.0, TAU, -3.0 * TAU] {
-            assert_eq!([0.1, half - 0.001, half + 0.005, half + 0.011, half - 0.005].map(|x| at(x + turns)), [5, 8, 8, 1, 1]);
+            assert_eq!(
+                [0.1, half - 0.001, half + 0.005, half + 0.011, half - 0.005].map(|x| at(x + turns)),
+                [5, 8, 8, 1, 1]
+            );
         }
         let long = Grid { axes: vec![GridAxis { from: -half, to: 3.0 * half, count: 8 }], ..grid };
         let long = Grid { space: GridSpace::Joints(vec![0]), ..long };

@@ -70,7 +70,11 @@ fn grid(name: &str, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Gr
         return Err(cells.error(what).hint("fewer divisions, or a grid for each part"));
     }
     if grid.channels().end > 64 {
-        let what = format!("numbers up to {} take {} outputs from here, and the last is 63", grid.cells(), grid.channels().len());
+        let what = format!(
+            "numbers up to {} take {} outputs from here, and the last is 63",
+            grid.cells(),
+            grid.channels().len()
+        );
         return Err(output.error(what).hint(format!("output = {}   (or lower)", 64 - grid.channels().len())));
     }
     check_hysteresis(&grid, t, units, robot)?;

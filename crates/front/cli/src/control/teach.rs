@@ -174,7 +174,6 @@ impl<'a> Teacher<'a> {
         let [x, y, z] = p.to_array().map(|v| ((v / per_unit) * 1e4).round() / 1e4);
         format!("[{x}, {y}, {z}] {}", self.units.length.symbol())
     }
-
 }
 
 /// The units of the cell file, as the service names them.
