@@ -45,6 +45,7 @@ struct FailingCells {
     cooperating: usize,
     tilted: usize,
     wrong_cells: usize,
+    off_entry: usize,
     any: usize,
 }
 
@@ -66,6 +67,7 @@ impl FailingCells {
         });
         self.tilted += has(|f| matches!(f, Finding::Tilted { .. }));
         self.wrong_cells += has(|f| matches!(f, Finding::WrongCell { .. }));
+        self.off_entry += has(|f| matches!(f, Finding::OffEntry { .. }));
         self.any += usize::from(!findings.is_empty());
     }
 }
@@ -102,7 +104,7 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell, {} off their entry",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
@@ -115,11 +117,12 @@ impl Summary {
             self.failing.energy_made,
             self.failing.cooperating,
             self.failing.tilted,
-            self.failing.wrong_cells
+            self.failing.wrong_cells,
+            self.failing.off_entry
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 20] {
+    fn rows(&self) -> [(&'static str, String); 21] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -140,6 +143,7 @@ impl Summary {
             ("cooperating wrongly", self.failing.cooperating.to_string()),
             ("tilted", self.failing.tilted.to_string()),
             ("wrong_cells", self.failing.wrong_cells.to_string()),
+            ("off their entry", self.failing.off_entry.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
@@ -218,18 +222,16 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
                 region(g)
             )
         }
-        Finding::TwoInside { region: g, robots: [a, b], t_s } => {
-            format!(
-                "robots {} and {} were both inside the exchange region {} at {t_s:.4} s",
-                robot(a),
-                robot(b),
-                region(g)
-            )
-        }
-        Finding::SilentDeadlock { robots } => {
-            let names: Vec<&str> = robots.iter().map(robot).collect();
-            format!("robots {} wait for one another for ever, and the run does not report it", names.join(", "))
-        }
+        Finding::TwoInside { region: g, robots: [a, b], t_s } => format!(
+            "robots {} and {} were both inside the exchange region {} at {t_s:.4} s",
+            robot(a),
+            robot(b),
+            region(g)
+        ),
+        Finding::SilentDeadlock { robots } => format!(
+            "robots {} wait for one another for ever, and the run does not report it",
+            robots.iter().map(robot).collect::<Vec<_>>().join(", ")
+        ),
         Finding::TooNear { robot: r, object, t_s, distance_m, least_m } => format!(
             "guided robot {} was {distance_m:.6} m from {} at {t_s:.4} s, at least {least_m:.6} m are promised",
             robot(r),
@@ -237,6 +239,9 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
         ),
         Finding::EnergyMade { robot: r, t_s, energy_j } => {
             format!("the forces of robot {} made {:.6} J until {t_s:.4} s", robot(r), -energy_j)
+        }
+        Finding::OffEntry { robot: r, t_s, off_m } => {
+            format!("the shaft of robot {} was {off_m:.9} m off its point of entry at {t_s:.4} s", robot(r))
         }
         Finding::NotHeld { robot: r, t_s, by_m } => {
             format!("the work-piece moved by {by_m:.9} m in the hand of robot {} at {t_s:.4} s", robot(r))

@@ -18,7 +18,7 @@ const GUIDES: [(&str, &str); 18] = [
     ("fixture", "[virtual fixtures](fixtures.md)"),
     ("teach", "[quickstart](quickstart.md#5-teach-a-region)"),
     ("watch", "[vision](vision.md#from-the-command-line)"),
-    ("region", "[roles](roles.md)"),
+    ("region", "[roles](roles.md), [controllers](controllers.md)"),
     ("example", "[the examples](#the-examples)"),
     ("live", "[live](live.md)"),
     ("control", "[control](control.md)"),

@@ -6,6 +6,7 @@ use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
 use elbowroom_monitor::{Grid, Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
+use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_robot::{ObjectId, Robot, RobotId};
 use elbowroom_scene::{Object, PairRules};
 use elbowroom_spatial::Pose;
@@ -176,15 +177,27 @@ pub struct CellRegion {
     pub follow: Option<Follow>,
     /// Largest plausible motion of that frame, for the monitors.
     pub source_limits: SourceLimits,
-    /// Whether its table is one of a fence.
-    pub is_fence: bool,
+    /// Its solid as the file describes it.
+    pub solid: RegionSolid,
 }
 
 impl CellRegion {
     /// Its table, as the cell file writes it: `[region.NAME]` or `[fence.NAME]`.
     pub fn table(&self) -> String {
-        format!("[{}.{}]", if self.is_fence { "fence" } else { "region" }, self.region.name)
+        let word = if matches!(self.solid, RegionSolid::Walls(_)) { "fence" } else { "region" };
+        format!("[{word}.{}]", self.region.name)
     }
+}
+
+/// The solid of a region as the file describes it; for the monitors it is one shape, possibly a mesh.
+#[derive(Debug, Clone)]
+pub enum RegionSolid {
+    /// The shape of the region.
+    Shape,
+    /// Everything outside of this shape, in the frame of the region's shape: `keep = "inside"`.
+    AllBut(Shape),
+    /// The walls of a fence, with their poses in the world.
+    Walls(Vec<(Cuboid, Pose)>),
 }
 
 /// The source that a dynamic region follows.

@@ -230,7 +230,7 @@ fn config_error(cell: &Cell, robot: &CellRobot, e: &ConfigError) -> Diagnostic {
     };
     let error = Diagnostic::new(&cell.file, line, e);
     match e {
-        ConfigError::Grid { .. } => error.hint("another `output`, fewer `cells`, or a smaller `hysteresis`"),
+        ConfigError::Grid { .. } => error.hint("another `output`, so that each has its own"),
         _ => error,
     }
 }

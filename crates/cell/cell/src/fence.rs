@@ -117,23 +117,17 @@ struct Panel {
 }
 
 impl Fence {
-    /// The walls as one mesh in the world, a closed box for each part between, below and above gates.
+    /// The walls as boxes with their poses in the world: one for each part between, below and above gates.
     ///
     /// # Errors
     /// [`FenceError`]: walls that cross or would reach into the fence, and gates that are not in a wall.
-    pub fn mesh(&self) -> Result<TriMesh, FenceError> {
+    pub fn boxes(&self) -> Result<Vec<(Cuboid, Pose)>, FenceError> {
         let walls = self.walls()?;
         let gates = self.gates_of(&walls)?;
-        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-        for (index, wall) in walls.iter().enumerate() {
-            for panel in self.panels(&walls, index, &gates[index]) {
-                let first = vertices.len() as u32;
-                let (corners, sides) = self.solid(wall, &panel);
-                vertices.extend(corners);
-                triangles.extend(sides.iter().map(|side| side.map(|i| i + first)));
-            }
-        }
-        Ok(TriMesh::new(vertices, triangles)?)
+        let of_wall = |(index, wall): (usize, &Wall)| -> Vec<_> {
+            self.panels(&walls, index, &gates[index]).iter().map(|panel| self.solid(wall, panel)).collect()
+        };
+        Ok(walls.iter().enumerate().flat_map(of_wall).collect())
     }
 
     fn walls(&self) -> Result<Vec<Wall>, FenceError> {
@@ -242,15 +236,29 @@ impl Fence {
         wall.length_m + 1.01 * notch_m
     }
 
-    fn solid(&self, wall: &Wall, panel: &Panel) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    fn solid(&self, wall: &Wall, panel: &Panel) -> (Cuboid, Pose) {
         let middle = wall.point(0.5 * (panel.along_m[0] + panel.along_m[1]), 0.5 * self.thickness_m);
         let length_m = panel.along_m[1] - panel.along_m[0] + 2.0 * OVERLAP_M;
         let size = Vec3::new(length_m, self.thickness_m, panel.heights_m[1] - panel.heights_m[0]);
         let at = Vec3::new(middle.x, middle.y, 0.5 * (panel.heights_m[0] + panel.heights_m[1]));
-        let pose = Pose::new(Rotation::from_rpy(0.0, 0.0, wall.along.y.atan2(wall.along.x)), at);
-        let (corners, sides) = tessellate(&Shape::Cuboid(Cuboid { half_extents: size * 0.5 }), 1e-3);
-        (corners.into_iter().map(|corner| pose.transform_point(corner)).collect(), sides)
+        let rotation = Rotation::from_rpy(0.0, 0.0, wall.along.y.atan2(wall.along.x));
+        (Cuboid { half_extents: size * 0.5 }, Pose::new(rotation, at))
     }
+}
+
+/// Boxes as one mesh in the world.
+///
+/// # Errors
+/// [`MeshError`] if there are none, or if they are too large.
+pub(crate) fn mesh_of_boxes(boxes: &[(Cuboid, Pose)]) -> Result<TriMesh, MeshError> {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for (cuboid, in_world) in boxes {
+        let first = vertices.len() as u32;
+        let (corners, sides) = tessellate(&Shape::Cuboid(*cuboid), 1e-3);
+        vertices.extend(corners.into_iter().map(|corner| in_world.transform_point(corner)));
+        triangles.extend(sides.iter().map(|side| side.map(|i| i + first)));
+    }
+    TriMesh::new(vertices, triangles)
 }
 
 #[cfg(test)]
@@ -270,6 +278,10 @@ mod tests {
 
     /// An L, and the same the other way round.
     const L: [(f64, f64); 6] = [(-2.0, -2.0), (2.0, -2.0), (2.0, 0.0), (0.0, 0.0), (0.0, 2.0), (-2.0, 2.0)];
+
+    fn mesh_of(fence: &Fence) -> Result<TriMesh, FenceError> {
+        Ok(mesh_of_boxes(&fence.boxes()?)?)
+    }
 
     fn distance(mesh: &TriMesh, p: Vec3) -> f64 {
         let wall = Shape::Mesh(mesh.clone().into());
@@ -295,7 +307,7 @@ mod tests {
             if reversed {
                 fence.corners.reverse();
             }
-            let mesh = fence.mesh().unwrap();
+            let mesh = mesh_of(&fence).unwrap();
             assert!(mesh.report().closed && !mesh.report().inside_out);
             for _ in 0..2_000 {
                 let p = Point2::new(random.between(-2.3, 2.3), random.between(-2.3, 2.3));
@@ -314,19 +326,19 @@ mod tests {
     fn gates_are_open_and_the_rest_of_their_wall_is_not() {
         let ends = [Point2::new(2.0, -0.5), Point2::new(2.0, -1.5)];
         let gates = vec![Gate { ends, heights_m: [0.8, 1.4] }];
-        let mesh = Fence { gates, ..fence(&L) }.mesh().unwrap();
+        let mesh = mesh_of(&Fence { gates, ..fence(&L) }).unwrap();
         let at = |y: f64, z: f64| distance(&mesh, Vec3::new(2.02, y, z));
         assert!((at(-1.0, 1.1) - 0.3).abs() < 2e-6);
         assert!([(-1.0, 0.7), (-1.0, 1.5), (-0.4, 1.1), (-1.6, 1.1)].iter().all(|(y, z)| at(*y, *z) <= 0.0));
         // From corner to corner, floor to top: no wall is left.
         let ends = [Point2::new(2.0, 0.0), Point2::new(2.0, -2.0)];
-        let open = Fence { gates: vec![Gate { ends, heights_m: [-1.0, 9.0] }], ..fence(&L) }.mesh().unwrap();
+        let open = mesh_of(&Fence { gates: vec![Gate { ends, heights_m: [-1.0, 9.0] }], ..fence(&L) }).unwrap();
         assert!(distance(&open, Vec3::new(2.02, -1.0, 1.0)) > 0.9);
     }
 
     #[test]
     fn what_is_no_fence_is_refused_by_number() {
-        let wrong = |list: &[(f64, f64)]| fence(list).mesh().unwrap_err();
+        let wrong = |list: &[(f64, f64)]| mesh_of(&fence(list)).unwrap_err();
         assert_eq!(wrong(&[(0.0, 0.0), (1.0, 0.0), (1.0, 0.0), (0.0, 1.0)]), FenceError::Short(2));
         let bow = [(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
         assert_eq!(wrong(&bow), FenceError::Crossing(1, 3));
@@ -337,13 +349,13 @@ mod tests {
         assert_eq!(wrong(&reversed), FenceError::Narrow(5));
         // A slot of 80 mm between two halves.
         let slot = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.04, 1.0), (1.04, 0.5), (0.96, 0.5), (0.96, 1.0), (0.0, 1.0)];
-        assert!(fence(&slot).mesh().is_ok());
-        assert!(matches!(Fence { thickness_m: 0.1, ..fence(&slot) }.mesh(), Err(FenceError::Thick(_))));
+        assert!(mesh_of(&fence(&slot)).is_ok());
+        assert!(matches!(mesh_of(&Fence { thickness_m: 0.1, ..fence(&slot) }), Err(FenceError::Thick(_))));
         let gate = |from: (f64, f64), to: (f64, f64)| Gate {
             ends: [Point2::new(from.0, from.1), Point2::new(to.0, to.1)],
             heights_m: [0.0, 2.0],
         };
-        let with = |gates: Vec<Gate>| Fence { gates, ..fence(&L) }.mesh().unwrap_err();
+        let with = |gates: Vec<Gate>| mesh_of(&Fence { gates, ..fence(&L) }).unwrap_err();
         let far = with(vec![gate((2.3, -0.5), (2.3, -1.5))]);
         assert!(matches!(far, FenceError::GateOffLine { gate: 1, off_m } if (off_m - 0.3).abs() < 1e-9), "{far:?}");
         assert_eq!(with(vec![gate((2.0, -1.0), (2.0, -1.0))]), FenceError::GateWithoutSize(1));

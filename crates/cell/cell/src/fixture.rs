@@ -55,7 +55,7 @@ pub struct CellGuide {
     pub name: String,
     /// Line of its table.
     pub line: usize,
-    /// Where the hand is kept, in the world.
+    /// Where the hand is kept in the world, or where the shaft of the tool enters.
     pub guide: Guide,
     /// The tool that it is for.
     pub tool: FixtureTool,

@@ -13,11 +13,12 @@ use elbowroom_shared_control::force::{
     ArmField, ArmForces, BodySettings, FieldPair, ImpedancePort, ImpedanceSettings, Response, VirtualBody,
 };
 use elbowroom_shared_control::{GuidedArm, NavigatorError, ProtectedSurface, SurfaceNavigator};
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{Pose, Vec3};
 
 use crate::operated_arm::{FixturesOn, SurfaceOwner};
 use crate::{
-    Cell, CellFixture, CellForce, CellOperator, FixtureRef, FixtureTool, ForceOther, ForceResponse, OperatedArm,
+    Cell, CellFixture, CellForce, CellGuide, CellOperator, FixtureRef, FixtureTool, ForceOther, ForceResponse,
+    OperatedArm,
 };
 
 /// Chord error of curved surfaces and tools, metres.
@@ -67,13 +68,7 @@ impl CellOperator {
         let mut arm = GuidedArm::new(navigator, solver, (scene, self.robot), state, speeds)
             .map_err(|_| refused(format!("\"{}\" cannot hold its tool point at its start", robot.name)))?;
         let guide = on.guide().map(|index| &cell.guidance.guides[index]);
-        if let Some(g) = guide
-            && g.guide.distance_m(tool_in_world.translation) > FAR_FROM_GUIDE_M
-        {
-            let distance = cell.units.show_length(g.guide.distance_m(tool_in_world.translation));
-            let what = format!("the tool starts {distance} from the guide \"{}\", and moves there at once", g.name);
-            notes.push(Diagnostic::new(&cell.file, g.line, what).hint("a guide through the tool point at its start"));
-        }
+        notes.extend(guide.and_then(|g| far_start(cell, g, &tool_in_world)));
         arm.set_guide(guide.map(|g| g.guide.clone()));
         let forces = self.forces(cell, scene, &owners, (link, tcp_in_link.translation));
         if let Some(forces) = forces.map_err(|e| refused(e.to_string()))? {
@@ -211,6 +206,24 @@ fn surface_of(parts: &[&Collider], tool: FixtureTool, cell: &Cell) -> Option<Arc
         triangles.extend(mesh.triangles().iter().map(|corners| corners.map(|corner| corner + first)));
     }
     TriMesh::new(vertices, triangles).ok().map(Arc::new)
+}
+
+/// A note on a tool that starts far from its guide.
+fn far_start(cell: &Cell, g: &CellGuide, tool_in_world: &Pose) -> Option<Diagnostic> {
+    let distance_m = g.guide.distance_m(tool_in_world);
+    if distance_m <= FAR_FROM_GUIDE_M {
+        return None;
+    }
+    let (distance, name) = (cell.units.show_length(distance_m), &g.name);
+    let (what, hint) = if g.guide.remote_center().is_some() {
+        let what =
+            format!("the shaft starts {distance} from the point of \"{name}\", and turns there before the tool moves");
+        (what, "a start with the shaft through the point")
+    } else {
+        let what = format!("the tool starts {distance} from the guide \"{name}\", and moves there at once");
+        (what, "a guide through the tool point at its start")
+    };
+    Some(Diagnostic::new(&cell.file, g.line, what).hint(hint))
 }
 
 fn in_words(e: NavigatorError, cell: &Cell) -> String {

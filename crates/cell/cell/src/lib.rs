@@ -4,7 +4,7 @@
 //! `docs/cell-file.md`). In a [`Cell`] all names are resolved and all numbers are in metres, radians and seconds.
 //! [`configure`] builds the configuration of each robot's monitor from it, [`QueryModel`] the scene,
 //! [`region_constraint`] the constraint that keeps planned paths out of regions. [`seal`] controls who may change what
-//! in the file, with the keys of [`access`]. `elbowroom_sim` runs the programs.
+//! in the file, with the keys of [`access`]. [`export_zones`] writes regions as zones of a robot's own controller. `elbowroom_sim` runs the programs.
 //!
 //! ```
 //! use elbowroom_cell::{Cell, configure};
@@ -34,6 +34,7 @@ mod area_border;
 mod cell;
 mod cell_ik_error;
 pub mod configure;
+mod controller_zones;
 mod drawn_fixture;
 mod fence;
 mod file;
@@ -57,6 +58,7 @@ mod payload;
 mod poses;
 mod program;
 mod query_model;
+mod reach;
 pub mod region_constraint;
 mod region_edits;
 mod region_id;
@@ -76,9 +78,10 @@ mod virtual_robot_start;
 
 pub use cell::{
     Approval, AvoidanceSpec, Cell, CellGrid, CellPairRules, CellRegion, CellRobot, CellTiming, Follow, FrameSources,
-    MapSpec, Monitoring, Units,
+    MapSpec, Monitoring, RegionSolid, Units,
 };
 pub use cell_ik_error::CellIkError;
+pub use controller_zones::{ExportedRegion, ZoneExport, ZoneFrame, ZoneLanguage, export_zones};
 pub use drawn_fixture::{DrawnFixture, DrawnTarget, MOST_DRAWN_POINTS};
 pub use elbowroom_access as access;
 pub use elbowroom_cooperation as cooperation;

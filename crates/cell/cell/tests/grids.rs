@@ -71,9 +71,14 @@ fn what_is_no_grid_is_refused_with_its_line() {
         (BOX.replace("[5, 2, 1]", "[5, 2]"), 4, "2 numbers for 3 axes", "1 leaves an axis undivided"),
         (BOX.replace("[5, 2, 1]", "[5, 2, 0]"), 4, "cells", "1"),
         (BOX.replace("-400]", "400]"), 3, "has no volume", "differ in x, y and z"),
-        (BOX.replace("output = 4", "output = 61"), 1, "the outputs 61 to 64", "another `output`"),
-        (BOX.replace("cells = [5, 2, 1]", many) + "hysteresis = 0\n", 1, "90000 cells", "fewer `cells`"),
-        (format!("{BOX}hysteresis = 150\n"), 1, "at most half of a cell", "a smaller `hysteresis`"),
+        (BOX.replace("output = 4", "output = 61"), 5, "numbers up to 10 take 4 outputs", "output = 60"),
+        (BOX.replace("cells = [5, 2, 1]", many) + "hysteresis = 0\n", 4, "makes 90000 cells", "fewer divisions"),
+        (
+            format!("{BOX}hysteresis = 150\n"),
+            6,
+            "is 150 mm, more than half of a cell of 200 mm",
+            "a smaller `hysteresis`",
+        ),
         (format!("{BOX}robots = []\n"), 6, "is empty", "leave it out"),
         (format!("{BOX}robots = [\"b\"]\n"), 6, "the robot \"b\"", "a"),
         (format!("{BOX}{region}"), 1, "region `x` has one of its outputs 4 to 7", "another `output`"),
@@ -82,7 +87,8 @@ fn what_is_no_grid_is_refused_with_its_line() {
         (joints.replace("[\"joint_1\"]", "[]"), 2, "is empty", "joints = "),
         (joints.replace("[\"joint_1\"]", "[\"joint_1\", \"joint_1\"]"), 2, "is named twice", "once"),
         (format!("{joints}from = [1, 2]\n"), 5, "2 values for 1 joints", "one value per joint"),
-        (format!("{joints}from = [5]\nto = [5]\n"), 6, "is not above `from`", "from < to"),
+        (format!("{joints}from = [5]\nto = [5]\n"), 6, "they would go from 5 mm to 5 mm", "from < to"),
+        (format!("{joints}from = [2000]\n"), 5, "they would go from 2000 mm to 2000 mm", "from < to"),
         (format!("{joints}rpy = [0, 0, 1]\n"), 5, "turns a box", "one of the two"),
     ] {
         let e = Cell::parse("test.toml", &format!("{HEAD}{}{text}", rail("a", 0.0))).unwrap_err();

@@ -2,6 +2,8 @@
 
 mod cell_units;
 mod common;
+mod controller_zone_gaps;
+mod controller_zones;
 mod drawn_fixture;
 mod errors;
 mod grids;

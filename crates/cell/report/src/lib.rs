@@ -48,6 +48,7 @@ mod carried_motion;
 mod downsample;
 mod explanation;
 mod html;
+mod last_motion;
 pub mod levels_page;
 pub mod map_page;
 pub mod map_pictures;

@@ -11,7 +11,8 @@ use elbowroom_spatial::Vec3;
 
 use crate::carried_motion::carried;
 use crate::explanation::{collision_text, reason_text};
-use crate::summary::{followed, last_motion_s, millimetres};
+use crate::last_motion::finished_at;
+use crate::summary::{followed, millimetres};
 
 /// Fraction of the programmed override below which a robot counts as slowed down.
 const SLOWED: f64 = 0.995;
@@ -83,7 +84,7 @@ fn after_hit(robot: &RobotTrack) -> String {
 }
 
 fn finished(robot: &RobotTrack, rec: &Recording) -> String {
-    let at = format!("finished at {:.2} s", last_motion_s(robot).unwrap_or(rec.duration_s));
+    let at = finished_at(robot);
     match robot.stops.first() {
         Some(first) => {
             let total: f64 = robot.stops.iter().map(|s| s.to_s - s.from_s).sum();

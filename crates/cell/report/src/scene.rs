@@ -3,10 +3,10 @@
 use elbowroom_cell::{Cell, CellFixture};
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_monitor::Volume;
-use elbowroom_proximity::{Shape, repair::merge_targets, tessellate::tessellate};
+use elbowroom_proximity::{Cylinder, Shape, Sphere, repair::merge_targets, tessellate::tessellate};
 use elbowroom_robot::{Collider, ObjectId, Robot, RobotId};
 use elbowroom_scene::Object;
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::palette;
 
@@ -14,6 +14,11 @@ use crate::palette;
 pub(crate) const CHORD_ERROR_M: f64 = 1e-3;
 /// Levels along the longest side of a shield: smaller details are not drawn.
 const SHIELD_LEVELS: f64 = 100.0;
+/// Radius of the ball at a point of entry, m, and of the line through it.
+const ENTRY_RADIUS_M: f64 = 4e-3;
+const SHAFT_RADIUS_M: f64 = 8e-4;
+/// Length of the line, from the tip back, m.
+const SHAFT_LENGTH_M: f64 = 0.4;
 
 /// Geometry of a cell, as triangles.
 #[derive(Debug, Clone, Default)]
@@ -24,7 +29,7 @@ pub struct ReportScene {
     pub robots: Vec<ReportRobot>,
     /// Objects at their initial poses.
     pub objects: Vec<ReportObject>,
-    /// Shields of virtual fixtures.
+    /// Shields of virtual fixtures, and points through which tools enter.
     pub shields: Vec<ReportShield>,
 }
 
@@ -77,7 +82,7 @@ pub struct ReportObject {
     pub in_world: Pose,
 }
 
-/// The shield of a virtual fixture.
+/// The shield of a virtual fixture, or a ball at its point of entry.
 #[derive(Debug, Clone)]
 pub struct ReportShield {
     /// Name of the fixture.
@@ -114,6 +119,7 @@ impl ReportScene {
         }
         scene.title = cell.title();
         scene.shields = cell.guidance.fixtures.iter().filter_map(|fixture| shield(cell, fixture)).collect();
+        scene.add_entries(cell);
         cell.objects.iter().fold(scene, Self::object)
     }
 
@@ -145,6 +151,26 @@ impl ReportScene {
             tools: Vec::new(),
         });
         self
+    }
+
+    /// Adds a ball at each point of entry, and the line of the shaft to its tool.
+    fn add_entries(&mut self, cell: &Cell) {
+        for guide in &cell.guidance.guides {
+            let (Some(center), Some((_, tcp_in_link))) = (guide.guide.remote_center(), guide.tool.solid(cell)) else {
+                continue;
+            };
+            let radius = center.radius_m().max(ENTRY_RADIUS_M);
+            let (vertices, triangles) = tessellate(&Shape::Sphere(Sphere { radius }), 0.1 * radius);
+            let (name, in_world) = (guide.name.clone(), Pose::from_translation(center.at()));
+            self.shields.push(ReportShield { name, vertices, triangles, in_world, active: guide.active });
+            let half_length = 0.5 * SHAFT_LENGTH_M;
+            let shaft = Shape::Cylinder(Cylinder { half_length, radius: SHAFT_RADIUS_M });
+            let (vertices, triangles) = tessellate(&shaft, 0.5 * SHAFT_RADIUS_M);
+            let axis = center.axis_in_tool();
+            let in_tool = Pose::new(Rotation::from_z(axis), axis * -half_length);
+            let line = ReportMesh { vertices, triangles, in_link: tcp_in_link * in_tool, color: rgb(palette::SHIELD) };
+            self.robots[guide.tool.robot.0].link_meshes[guide.tool.link(cell).0].push(line);
+        }
     }
 
     /// The named tools of the robot added last.

@@ -10,14 +10,13 @@ use elbowroom_sim::{
 
 use crate::carried_motion::carried;
 use crate::explanation::explanation;
+use crate::last_motion::{STATIONARY_M_S, finished_at};
 use crate::sparkline::sparkline;
 
 /// Largest number of listed regions; the rest is counted.
 const MAX_REGIONS: usize = 12;
 /// Largest number of listed stops of a robot that finished.
 const MAX_STOPS: usize = 3;
-/// Below this speed (m/s) a TCP counts as stationary.
-const STATIONARY_M_S: f64 = 1e-4;
 
 /// Text summary of a run: robots, regions, tick times.
 ///
@@ -305,7 +304,7 @@ fn sensor_line(track: &SensorTrack) -> Line {
 pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     let Some(last) = robot.samples.last() else { return "no samples".into() };
     if robot.finished {
-        return format!("finished at {:.2} s", last_motion_s(robot).unwrap_or(last.t_s));
+        return finished_at(robot);
     }
     let since = robot.ending.stopped_at_s.unwrap_or(last.t_s);
     if robot.ending.outcome == Outcome::Deadlock {
@@ -322,11 +321,6 @@ pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
         _ if last.tcp_speed > STATIONARY_M_S => format!("still moving at {:.2} s", last.t_s),
         _ => format!("stopped {place}: {}", explanation(robot, robot.samples.len() - 1, rec)),
     }
-}
-
-/// Time of the last motion of the TCP, s; `None` if it never moved.
-pub fn last_motion_s(robot: &RobotTrack) -> Option<f64> {
-    robot.samples.iter().rfind(|s| s.tcp_speed > STATIONARY_M_S).map(|s| s.t_s)
 }
 
 /// Two lines, for narrow screens.

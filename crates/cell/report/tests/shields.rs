@@ -2,8 +2,10 @@
 
 use crate::page_data;
 use elbowroom_cell::Cell;
+use elbowroom_kinematics::ChainState;
 use elbowroom_report::{ReportScene, write_html};
 use elbowroom_sim::{RunOptions, simulate};
+use elbowroom_spatial::Vec3;
 
 #[test]
 fn the_report_has_a_shield_and_when_it_is_switched() {
@@ -28,4 +30,29 @@ fn the_report_has_a_shield_and_when_it_is_switched() {
     let triangles = data["meshes"][shield["mesh"].as_u64().unwrap() as usize]["i"]["n"].as_u64().unwrap() / 3;
     assert!((1_000..100_000).contains(&triangles), "{triangles}");
     assert_eq!(data["runs"][0]["shields"], serde_json::json!([[[0.25, false]]]));
+}
+
+#[test]
+fn the_report_has_the_point_of_entry_and_the_shaft_through_it() {
+    let examples = elbowroom_testkit::folder::examples();
+    let mut text = std::fs::read_to_string(examples.join("guided/cell.toml")).unwrap();
+    text += "[fixture.port]\nguide = \"entry\"\ntool = \"ns16\"\nat = [924, 0, 1325]\n";
+    let cell = Cell::parse(examples.join("guided/cell.toml"), &text).unwrap();
+    let scene = ReportScene::of_cell(&cell);
+    let port = scene.shields.iter().find(|shield| shield.name == "port").unwrap();
+    let at = Vec3::new(0.924, 0.0, 1.325);
+    assert!(port.active && port.in_world.translation.distance(at) < 1e-12);
+    assert!(port.vertices.iter().all(|v| (v.length() - 4e-3).abs() < 1e-4), "a ball of 4 mm");
+    // The line begins at the tip, 100 mm before the flange, and passes the point.
+    let robot = &cell.robots[0];
+    let line = scene.robots[0].link_meshes[robot.flange.0].last().unwrap();
+    let mut state = ChainState::new(&robot.robot.chain);
+    state.q.copy_from_slice(&robot.start);
+    robot.robot.chain.forward(&mut state);
+    let in_world = robot.base_in_world * state.link_in_root(robot.flange) * line.in_link;
+    let points: Vec<Vec3> = line.vertices.iter().map(|v| in_world.transform_point(*v)).collect();
+    let heights = points.iter().map(|p| p.z);
+    let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (l.min(z), h.max(z)));
+    assert!((low - 1.265).abs() < 1e-6 && (high - 1.665).abs() < 1e-6, "{low} to {high}");
+    assert!(points.iter().all(|p| (p.x - at.x).hypot(p.y - at.y) < 1e-3), "{points:?}");
 }

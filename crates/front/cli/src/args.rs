@@ -8,6 +8,7 @@ use elbowroom::query::{Level, QueryKind};
 
 use crate::arg_values::{margin, milliseconds};
 use crate::model_args::{JointArgs, Unit};
+use crate::taught_shape::TaughtShapeArgs;
 
 /// Collision awareness for industrial robot cells.
 ///
@@ -48,7 +49,7 @@ pub(crate) enum Command {
     /// Report what a camera of a cell sees, picture by picture: obstacles, and the joint-space cells that they block
     #[command(name = "watch")]
     WatchCamera(WatchArgs),
-    /// Edit regions and laws of a sealed cell under an access class, seal it, and show its edit log
+    /// Edit regions and laws by access class, seal a cell, show its edit log; write regions as zones of a controller
     #[command(subcommand)]
     Region(crate::region::args::RegionCommand),
     /// List the example cells, or copy them to a folder to start from
@@ -365,33 +366,6 @@ pub(crate) struct TeachArgs {
     /// The robot that was moved to the points; optional if there is only one
     #[arg(long)]
     pub(crate) robot: Option<String>,
-}
-
-/// A shape that taught points determine.
-#[derive(Debug, Args)]
-pub(crate) struct TaughtShapeArgs {
-    /// The shape that the points determine
-    #[arg(long, value_enum)]
-    pub(crate) shape: TaughtShape,
-    /// Teach with the flange instead of the TCP
-    #[arg(long)]
-    pub(crate) flange: bool,
-    /// Height of box3, in the cell file's unit of length: positive is upwards from the taught corners, negative downwards
-    #[arg(long, allow_negative_numbers = true)]
-    pub(crate) height: Option<f64>,
-    /// Thickness of the warning zone, in the cell file's unit of length
-    #[arg(long, default_value_t = 0.0)]
-    pub(crate) warning: f64,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum TaughtShape {
-    Sphere,
-    Sphere4,
-    Cylinder,
-    Plane,
-    Box,
-    Box3,
 }
 
 #[derive(Debug, Args)]

@@ -36,6 +36,7 @@ mod run;
 mod simulation;
 mod states;
 mod taught_region;
+mod taught_shape;
 mod teach;
 mod watch;
 

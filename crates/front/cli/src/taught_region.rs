@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use clap::ValueEnum as _;
 use elbowroom::Diagnostic;
 use elbowroom::cell::{Cell, Units};
 use elbowroom::monitor::Region;
@@ -10,8 +11,8 @@ use elbowroom::monitor::teach::{self as taught, HeightDirection};
 use elbowroom::proximity::Shape;
 use elbowroom::spatial::Vec3;
 
-use crate::args::{TaughtShape, TaughtShapeArgs};
 use crate::output::Failure;
+use crate::taught_shape::{TaughtShape, TaughtShapeArgs};
 
 /// What the taught points determine.
 pub(crate) struct TaughtRegion<'a> {
@@ -36,19 +37,28 @@ impl TaughtRegion<'_> {
             }
             (shape, ..) => {
                 let needs = format!("{} states and {}", points_of(shape).len(), height_of(shape));
-                return Err(format!("{} states; {shape:?} needs {needs}", points.len()));
+                return Err(format!("{} states; --shape {} needs {needs}", points.len(), word(shape)));
             }
         };
         result.map_err(|e| e.to_string())
     }
 
-    /// Whether `--height` fits the shape; else what to write.
-    pub(crate) fn check_height(&self) -> Result<(), Failure> {
+    /// Refuses a height that does not fit the shape, and a name or a warning zone that no cell file takes: before anybody
+    /// moves a robot.
+    pub(crate) fn check_arguments(&self) -> Result<(), Failure> {
         let shape = self.shape.shape;
-        if (shape == TaughtShape::Box3) == self.shape.height.is_some() {
-            return Ok(());
+        let fits = match self.shape.height {
+            Some(height) => shape == TaughtShape::Box3 && height.is_finite() && height != 0.0,
+            None => shape != TaughtShape::Box3,
+        };
+        if !fits {
+            let what = format!("--shape {} needs {}", word(shape), height_of(shape));
+            return Err(Failure::Wrong(format!(
+                "{what}\n  write: --shape box3 --height 300, or another shape without --height"
+            )));
         }
-        Err(Failure::Wrong(format!("{shape:?} needs {}", height_of(shape))))
+        let any = Region::sphere(self.name, Vec3::ZERO, 1.0);
+        self.check(&self.toml(&any), Path::new("the arguments"))
     }
 
     /// In words, how a box of three corners and a height was built; empty for other shapes.
@@ -61,6 +71,9 @@ impl TaughtRegion<'_> {
     /// The table of the cell file.
     pub(crate) fn toml(&self, region: &Region) -> String {
         let mut text = format!("[region.{}]\n{}kind = \"forbidden\"\n", key(self.name), toml(region, self.units));
+        if self.shape.inside {
+            text.push_str("keep = \"inside\"\n");
+        }
         if self.is_temporary {
             text.push_str("life = \"temporary\"\n");
         }
@@ -99,6 +112,11 @@ pub(crate) fn points_of(shape: TaughtShape) -> &'static [&'static str] {
 
 fn height_of(shape: TaughtShape) -> &'static str {
     if shape == TaughtShape::Box3 { "--height" } else { "no --height" }
+}
+
+/// The word of a shape on the command line.
+fn word(shape: TaughtShape) -> String {
+    shape.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
 }
 
 /// Describes the box built from three corners and a height, with the side that it extends to.
@@ -194,5 +212,5 @@ fn toml(region: &Region, units: Units) -> String {
 /// Formats a TOML key, bare if possible.
 fn key(name: &str) -> String {
     let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    if bare { name.to_owned() } else { format!("{name:?}") }
+    if bare { name.to_owned() } else { serde_json::Value::from(name).to_string() }
 }

@@ -124,3 +124,23 @@ fn the_commands_of_the_joint_map_example_work() {
     assert!(page.contains(r#""name":"link_3""#));
     assert!(typed("run cell.toml").contains("finished at"));
 }
+
+/// A slower program goes over to new paths in motion, too, whatever the tick: at the rate that it has.
+#[test]
+fn a_program_below_full_override_is_planned_again_in_motion() {
+    let dir = tempfile::tempdir().unwrap();
+    elbowroom(dir.path(), &["example", "mine"]).expect(0);
+    let robot = load(&dir.path().join("mine/models/kr125/kr125.urdf"), &LoadOptions::default()).unwrap().robot;
+    let cell = std::fs::read_to_string(dir.path().join("mine/crate/cell.toml")).unwrap();
+    for (percent, tick_ms) in [(90, 8), (50, 8), (30, 2)] {
+        let text = cell.replace("[program.kr125]\n", &format!("[program.kr125]\noverride = {percent}\n"));
+        let text = text.replace("tick_ms = 8", &format!("tick_ms = {tick_ms}"));
+        assert!(text.contains(&format!("override = {percent}")) && text.contains(&format!("tick_ms = {tick_ms}")));
+        std::fs::write(dir.path().join("mine/crate/slow.toml"), text).unwrap();
+        let (answer, least_m) = run(dir.path(), "slow.toml", &robot);
+        let perception = &answer["robots"][0]["perception"];
+        println!("override {percent} %, tick {tick_ms} ms: {perception}");
+        assert!(perception["replans_in_motion"].as_u64() > Some(0) && least_m > 0.02, "{perception}: {least_m}");
+        assert_eq!(perception["replans_from_rest"], 0, "override {percent} %: {perception}");
+    }
+}

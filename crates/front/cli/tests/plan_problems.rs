@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use crate::common::{Answer, elbowroom, examples, keys, model};
+use elbowroom::formats::robot::{LoadOptions, load};
+use elbowroom::kinematics::ChainState;
 use serde_json::{Value, json};
 
 /// Joint values of the example robot with its forearm in front.
@@ -171,4 +173,55 @@ fn a_robot_without_speeds_has_no_timed_paths() {
     let refused = elbowroom(dir.path(), &[&args[..], &["--paths", "paths"]].concat()).expect(2);
     assert!(refused.stderr.contains("joint_1") && refused.stderr.contains("<limit velocity="), "{}", refused.stderr);
     assert!(!dir.path().join("paths").exists());
+}
+
+/// The tool of the robot points down within 0.1 rad on the whole way around the post.
+#[test]
+fn a_path_constraint_keeps_an_axis_of_a_link_and_is_refused_where_it_cannot_be_kept() {
+    let down = [-0.8, 0.5, 0.0, 0.0, std::f64::consts::FRAC_PI_2 - 0.5, 0.0];
+    let upright = |x: f64, free: f64| {
+        json!({"orientation_constraints": [{"link_name": "tool0", "orientation": [1, 0, 0, 0],
+            "absolute_x_axis_tolerance": x, "absolute_y_axis_tolerance": 0.3, "absolute_z_axis_tolerance": free}]})
+    };
+    let with = |constraints: Value, goal: f64| {
+        let mut one = problem(true, &[0.8, 0.5, 0.0, 0.0, down[4] + goal, 0.0]);
+        one["request"]["start_state"]["joint_state"]["position"] = json!(down);
+        one["request"]["path_constraints"] = constraints;
+        json!({"set": {"1": one}})
+    };
+    let robot = load(&model("ns16"), &LoadOptions::default()).unwrap().robot;
+    let tool = robot.chain.link("tool0").unwrap();
+    let mut state = ChainState::new(&robot.chain);
+    let mut largest_tilt_rad = |dir: &Path| {
+        let tilt = |row: Vec<f64>| {
+            state.q.copy_from_slice(&row[1..]);
+            robot.chain.forward(&mut state);
+            let axis = state.link_in_root(tool).rotation.z_axis();
+            axis.x.hypot(axis.y).atan2(-axis.z)
+        };
+        rows(dir, "set-1.csv").into_iter().map(tilt).fold(0.0, f64::max)
+    };
+    let (dir, answer) = plan(&with(upright(0.1, 3.2), 0.0), &["--json", "--paths", "paths"]);
+    assert_eq!(answer.expect(0).json()["problems"][0]["proven"], true);
+    assert!(largest_tilt_rad(dir.path()) <= 0.1 + 1e-9);
+    let (dir, answer) = plan(&with(json!({}), 0.0), &["--json", "--paths", "paths"]);
+    answer.expect(0);
+    assert!(largest_tilt_rad(dir.path()) > 0.1, "without it the tool tilts");
+    // A goal that tilts the tool by 0.2 rad.
+    let (_, answer) = plan(&with(upright(0.1, 3.2), 0.2), &["--json"]);
+    let reason = answer.expect(0).json()["problems"][0]["reason"].clone();
+    let words = "goal: the path constraint is violated: an orientation that the constraint forbids (an axis of `tool0` is 11.5° off";
+    assert!(reason.as_str().unwrap().starts_with(words), "{reason}");
+    for (constraints, message) in [
+        (upright(0.1, 0.5), "leaves 0 axes free"),
+        (
+            json!({"orientation_constraints": [{"link_name": "tool", "absolute_x_axis_tolerance": 0.1,
+            "absolute_y_axis_tolerance": 0.1, "absolute_z_axis_tolerance": 4}]}),
+            "there is no link `tool`",
+        ),
+    ] {
+        let (_, answer) = plan(&with(constraints, 0.0), &["--json"]);
+        let refused = answer.expect(2).stderr;
+        assert!(refused.contains("set `set`, problem `1`") && refused.contains(message), "{refused}");
+    }
 }

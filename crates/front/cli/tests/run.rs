@@ -171,6 +171,21 @@ fn at_full_speed_the_law_of_the_paper_alone_stops_in_a_zone_that_is_thick_enough
     }
 }
 
+/// A door has joints and no program.
+#[test]
+fn what_has_no_program_has_not_finished_but_not_moved() {
+    let dir = swing();
+    let door = "[robot.door]\ndh = [{ a = 800, min = 0, max = 100, speed = 60 }]\nbase = { at = [0, 3000, 0] }\n\
+                links = [{ box = { at = [-400, 0, 1000], size = [800, 40, 2000] } }]\n";
+    let file = dir.path().join("cell.toml");
+    std::fs::write(&file, std::fs::read_to_string(&file).unwrap() + door).unwrap();
+    let answer = elbowroom(dir.path(), &["run", "cell.toml", "--out", "out"]).expect(0);
+    assert!(answer.stdout.contains("door   did not move\n"), "{}", answer.stdout);
+    assert!(!answer.stdout.contains("door   finished") && answer.stdout.contains("arm    "), "{}", answer.stdout);
+    let report = std::fs::read_to_string(dir.path().join("out/report.html")).unwrap();
+    assert!(report.contains("door did not move"));
+}
+
 /// The number of the cell is that of the TCP in the same row, but for the hysteresis of 1 mm.
 #[test]
 fn grids_add_columns_with_the_number_of_the_occupied_cell() {

@@ -1,6 +1,6 @@
 //! Configuration of a monitor: one robot, its guarded volumes, regions, sources of motion and laws.
 
-use elbowroom_kinematics::Chain;
+use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_spatial::Pose;
 
 use crate::{Grid, Laws, Region, RegionId, RegionKind, SourceSpec, Volume};
@@ -213,11 +213,18 @@ impl Configuration {
         volume.shape.validate().map_err(|e| bad(e.to_string()))
     }
 
+    /// Whether an independent joint turns without end.
+    pub(crate) fn turns(&self, q: usize) -> bool {
+        let joint = self.chain.active_joints()[q];
+        self.chain.joints()[joint.0].kind == JointKind::Continuous
+    }
+
     /// A grid's outputs are its own: of bits that a region or another grid raises too, nobody could read a number.
     fn validate_grid(&self, index: usize, grid: &Grid) -> Result<(), ConfigError> {
         let bad = |why: String| ConfigError::Grid { grid: grid.name.clone(), why };
         let has_tcp = self.volumes.iter().any(|v| v.part.is_tcp());
-        if let Some(why) = grid.problem(self.chain.dof(), has_tcp) {
+        let turns: Vec<bool> = (0..self.chain.dof()).map(|q| self.turns(q)).collect();
+        if let Some(why) = grid.problem(&turns, has_tcp) {
             return Err(bad(why));
         }
         let channels = grid.channels();

@@ -1,11 +1,14 @@
 //! Grids: the cell of the working area that a robot occupies, as one number on digital outputs.
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use elbowroom_spatial::Pose;
 
 /// Most cells of a grid.
 const MAX_CELLS: u64 = 65_535;
+/// By how much a range may be longer than a turn, rad.
+const ROUNDING: f64 = 1e-9;
 /// Digital outputs of a robot.
 const CHANNELS: u8 = 64;
 
@@ -70,6 +73,15 @@ pub struct GridAxis {
     pub count: u32,
 }
 
+/// A coordinate on an axis of a grid.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Coordinate {
+    /// m or rad.
+    pub(crate) at: f64,
+    /// A turn, rad, if values that differ by turns are the same; else 0.
+    pub(crate) turn: f64,
+}
+
 impl GridAxis {
     /// Length of a division, m or rad.
     fn step(&self) -> f64 {
@@ -77,14 +89,16 @@ impl GridAxis {
     }
 
     /// The division of a coordinate: the former one as long as the coordinate is at most the hysteresis beyond it.
-    fn place(&self, at: f64, former: Option<u32>, hysteresis: f64) -> Option<u32> {
+    fn place(&self, Coordinate { at, turn }: Coordinate, former: Option<u32>, hysteresis: f64) -> Option<u32> {
         let border = |place: u32| self.from + f64::from(place) * self.step();
-        let stays = |place: &u32| at >= border(*place) - hysteresis && at <= border(*place + 1) + hysteresis;
+        let holds = |place: u32, at: f64| at >= border(place) - hysteresis && at <= border(place + 1) + hysteresis;
+        let stays = |place: &u32| [at, at - turn, at + turn].iter().any(|at| holds(*place, *at));
         if let Some(place) = former.filter(stays) {
             return Some(place);
         }
+        let at = if turn > 0.0 { self.from + (at - self.from).rem_euclid(turn) } else { at };
         let is_within = at >= self.from && at <= self.to;
-        is_within.then(|| (((at - self.from) / self.step()) as u32).min(self.count - 1))
+        is_within.then(|| (((at - self.from) / self.step()) as u32).min(self.count.saturating_sub(1)))
     }
 }
 
@@ -102,28 +116,34 @@ impl Grid {
 
     /// The number in the digital outputs of a robot with this grid ([`TickReport::outputs`](crate::TickReport)).
     pub fn number_in(&self, outputs: u64) -> u32 {
-        let bits = self.channels().len();
-        (outputs.checked_shr(self.output.into()).unwrap_or(0) & ((1 << bits) - 1)) as u32
+        let mask = u64::MAX.checked_shr(u64::BITS - self.channels().len() as u32).unwrap_or(0);
+        (outputs.checked_shr(self.output.into()).unwrap_or(0) & mask) as u32
     }
 
     /// The number of the cell at these coordinates (m or rad, one per axis), 0 outside; the `former` cell is left only
     /// beyond its border and the hysteresis. 0 if a coordinate is missing or not a number.
     pub fn cell_at(&self, coordinates: &[f64], former: u32) -> u32 {
-        let mut rest = former.checked_sub(1);
-        let (mut number, mut stride) = (0, 1);
-        for (k, axis) in self.axes.iter().enumerate() {
-            let before = rest.map(|r| r % axis.count);
-            rest = rest.map(|r| r / axis.count);
-            let at = coordinates.get(k).copied().unwrap_or(f64::NAN);
-            let Some(place) = axis.place(at, before, self.hysteresis) else { return 0 };
-            number += stride * place;
-            stride *= axis.count;
-        }
-        number + 1
+        self.cell(coordinates.iter().map(|at| Coordinate { at: *at, turn: 0.0 }), former)
     }
 
-    /// What is wrong with the grid, if something is, for a robot with so many independent joints.
-    pub(crate) fn problem(&self, joints: usize, has_tcp: bool) -> Option<String> {
+    /// Like [`Self::cell_at`].
+    pub(crate) fn cell(&self, mut coordinates: impl Iterator<Item = Coordinate>, former: u32) -> u32 {
+        let mut rest = former.checked_sub(1);
+        let (mut number, mut stride) = (0_u32, 1_u32);
+        for axis in &self.axes {
+            let before = rest.and_then(|r| r.checked_rem(axis.count));
+            rest = rest.and_then(|r| r.checked_div(axis.count));
+            let place = coordinates.next().and_then(|at| axis.place(at, before, self.hysteresis));
+            let Some(place) = place else { return 0 };
+            number = number.saturating_add(stride.saturating_mul(place));
+            stride = stride.saturating_mul(axis.count);
+        }
+        number.saturating_add(1)
+    }
+
+    /// What is wrong with the grid, if something is, for a robot with these independent joints: whether each turns without
+    /// end.
+    pub(crate) fn problem(&self, joints: &[bool], has_tcp: bool) -> Option<String> {
         if let Some(why) = self.axes.iter().find_map(|axis| self.axis_problem(axis)) {
             return Some(why);
         }
@@ -156,7 +176,7 @@ impl Grid {
         })
     }
 
-    fn space_problem(&self, dof: usize, has_tcp: bool) -> Option<String> {
+    fn space_problem(&self, turns: &[bool], has_tcp: bool) -> Option<String> {
         match &self.space {
             GridSpace::Tcp { frame_in_world } => {
                 if self.axes.len() > 3 {
@@ -171,7 +191,15 @@ impl Grid {
                 if joints.len() != self.axes.len() {
                     return Some(format!("{} joints for {} axes", joints.len(), self.axes.len()));
                 }
-                joints.iter().find(|j| **j >= dof).map(|j| format!("joint {j} of a robot with {dof} joints"))
+                let dof = turns.len();
+                if let Some(j) = joints.iter().find(|j| **j >= dof) {
+                    return Some(format!("joint {j} of a robot with {dof} joints"));
+                }
+                let is_long = |(j, axis): &(&usize, &GridAxis)| turns[**j] && axis.to - axis.from > TAU + ROUNDING;
+                let long = joints.iter().zip(&self.axes).find(is_long);
+                long.map(|_| {
+                    "more than a turn of a joint that turns without end: its values count modulo a turn".into()
+                })
             }
         }
     }
@@ -231,6 +259,42 @@ mod tests {
         // At the ends, too; and nobody is in a cell before the point has reached it.
         assert_eq!([-0.005, -0.011, -0.005, 0.0].map(&mut at), [1, 0, 0, 1]);
         assert_eq!(at(f64::NAN), 0);
+    }
+
+    /// A joint that turns without end trembles where its turns meet, however many it has made.
+    #[test]
+    fn the_ends_of_a_turn_are_a_border_like_others() {
+        let half = std::f64::consts::PI;
+        let grid = grid(vec![GridAxis { from: -half, to: half, count: 8 }], 0.01);
+        let mut cell = 0;
+        let mut at = |x: f64| {
+            cell = grid.cell([Coordinate { at: x, turn: TAU }].into_iter(), cell);
+            cell
+        };
+        for turns in [0.0, TAU, -3.0 * TAU] {
+            assert_eq!(
+                [0.1, half - 0.001, half + 0.005, half + 0.011, half - 0.005].map(|x| at(x + turns)),
+                [5, 8, 8, 1, 1]
+            );
+        }
+        let long = Grid { axes: vec![GridAxis { from: -half, to: 3.0 * half, count: 8 }], ..grid };
+        let long = Grid { space: GridSpace::Joints(vec![0]), ..long };
+        assert!(long.problem(&[true], true).is_some_and(|why| why.contains("more than a turn")));
+        assert_eq!(long.problem(&[false], true), None);
+    }
+
+    /// A grid that no monitor takes answers something, and does not panic.
+    #[test]
+    fn impossible_grids_do_not_panic() {
+        for (count, axes) in [(0, 1), (0, 3), (u32::MAX, 1), (u32::MAX, 3)] {
+            let grid = Grid { output: 40, ..grid(vec![GridAxis { from: 0.0, to: 1.0, count }; axes], 0.0) };
+            for former in [0, 1, 77, u32::MAX] {
+                grid.cell_at(&[0.9; 3], former);
+                grid.cell_at(&[f64::NAN; 2], former);
+            }
+            grid.number_in(u64::MAX);
+            assert!(grid.problem(&[], true).is_some());
+        }
     }
 
     #[test]

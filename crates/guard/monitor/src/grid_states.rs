@@ -1,7 +1,8 @@
 //! The present cells of the grids of a robot.
 
-use elbowroom_kinematics::JointKind;
+use std::f64::consts::TAU;
 
+use crate::grid::Coordinate;
 use crate::placement::Placement;
 use crate::{Configuration, Grid, GridSpace};
 
@@ -9,25 +10,24 @@ use crate::{Configuration, Grid, GridSpace};
 #[derive(Debug)]
 pub(crate) struct GridStates {
     cells: Vec<u32>,
-    /// Coordinates of the grid that is evaluated; as long as the longest list of axes.
-    coordinates: Vec<f64>,
+    /// The volumes of tool centre points: those of exchanged tools are attached and detached.
+    tcps: Vec<usize>,
     /// The digital outputs, one bit each.
     pub(crate) bits: u64,
 }
 
 impl GridStates {
-    pub(crate) fn new(grids: &[Grid]) -> Self {
-        let most = grids.iter().map(|grid| grid.axes.len()).max().unwrap_or(0);
-        Self { cells: vec![0; grids.len()], coordinates: vec![0.0; most.max(3)], bits: 0 }
+    pub(crate) fn new(config: &Configuration) -> Self {
+        let tcps = config.volumes.iter().enumerate().filter(|(_, v)| v.part.is_tcp()).map(|(i, _)| i);
+        Self { cells: vec![0; config.grids.len()], tcps: tcps.collect(), bits: 0 }
     }
 
     /// Finds the cells of the robot where it is now.
     pub(crate) fn update(&mut self, config: &Configuration, now: &Placement) {
-        let Self { cells, coordinates, bits } = self;
-        *bits = 0;
-        for (grid, cell) in config.grids.iter().zip(cells) {
-            *cell = if locate(grid, config, now, coordinates) { grid.cell_at(coordinates, *cell) } else { 0 };
-            *bits |= u64::from(*cell) << grid.output;
+        self.bits = 0;
+        for (grid, cell) in config.grids.iter().zip(&mut self.cells) {
+            *cell = cell_of(grid, &self.tcps, config, now, *cell);
+            self.bits |= u64::from(*cell) << grid.output;
         }
     }
 
@@ -40,26 +40,17 @@ impl GridStates {
     }
 }
 
-/// Writes the robot's coordinates in the space of a grid; returns false if the robot has none, because its tool is
-/// not mounted.
-fn locate(grid: &Grid, config: &Configuration, now: &Placement, coordinates: &mut [f64]) -> bool {
+/// The cell of the robot; 0 if no tool is mounted.
+fn cell_of(grid: &Grid, tcps: &[usize], config: &Configuration, now: &Placement, former: u32) -> u32 {
     match &grid.space {
         GridSpace::Tcp { frame_in_world } => {
-            let volumes = config.volumes.iter().enumerate();
-            let tcp = volumes.filter(|(_, v)| v.part.is_tcp()).find(|(i, _)| now.attached.contains(*i));
-            let Some((tcp, _)) = tcp else { return false };
-            let p = frame_in_world.inverse().transform_point(now.volume_in_world[tcp].translation);
-            coordinates[..3].copy_from_slice(&p.to_array());
+            let Some(tcp) = tcps.iter().find(|v| now.attached.contains(**v)) else { return 0 };
+            let p = frame_in_world.inverse_transform_point(now.volume_in_world[*tcp].translation);
+            grid.cell(p.to_array().into_iter().map(|at| Coordinate { at, turn: 0.0 }), former)
         }
         GridSpace::Joints(joints) => {
-            for ((coordinate, q), axis) in coordinates.iter_mut().zip(joints).zip(&grid.axes) {
-                let joint = config.chain.active_joints()[*q];
-                let turns = config.chain.joints()[joint.0].kind == JointKind::Continuous;
-                let value = now.chain.q[*q];
-                *coordinate =
-                    if turns { axis.from + (value - axis.from).rem_euclid(std::f64::consts::TAU) } else { value };
-            }
+            let turn = |q: usize| if config.turns(q) { TAU } else { 0.0 };
+            grid.cell(joints.iter().map(|q| Coordinate { at: now.chain.q[*q], turn: turn(*q) }), former)
         }
     }
-    true
 }

@@ -115,11 +115,12 @@ impl Monitor {
             self.sweep.reset();
         }
         self.measure(s, dt_s);
+        // A robot that brakes too little is stopped, and is where it is.
+        self.regions.update_grids(&self.config, &self.now);
         if self.stopping_law.as_ref().is_some_and(StoppingLaw::brakes_too_little) {
             return self.stop(s, Fault::Braking);
         }
         self.regions.update(&self.config, &self.clearances, &mut self.sweep, &mut self.log);
-        self.regions.update_grids(&self.config, &self.now);
         if let Some(zone_client) = &mut self.zone_client {
             let Self { regions, clearances, log, .. } = self;
             let status = |r: RegionId| RegionStatus {

@@ -50,7 +50,7 @@ impl RegionStates {
             switched: Vec::with_capacity(2 * count + 16),
             just_switched: Vec::with_capacity(2 * count + 16),
             outputs: DigitalOutputs::new(),
-            grids: GridStates::new(&config.grids),
+            grids: GridStates::new(config),
         }
     }
 

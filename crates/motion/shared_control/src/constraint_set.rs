@@ -1,6 +1,8 @@
 //! Constraints of one step, in fixed memory.
 
-use crate::LinearConstraint;
+use elbowroom_spatial::Vec3;
+
+use crate::{LinearConstraint, project_onto_constraints};
 
 /// Number of constraints kept. A tool touches a surface of any fineness with three; more serve smoothness alone.
 const CAPACITY: usize = 64;
@@ -15,10 +17,8 @@ pub(crate) struct ConstraintSet {
 }
 
 impl ConstraintSet {
-    pub const EMPTY: Self = Self {
-        all: [LinearConstraint { normal: elbowroom_spatial::Vec3::ZERO, least: f64::NEG_INFINITY }; CAPACITY],
-        len: 0,
-    };
+    pub const EMPTY: Self =
+        Self { all: [LinearConstraint { normal: Vec3::ZERO, least: f64::NEG_INFINITY }; CAPACITY], len: 0 };
 
     pub fn clear(&mut self) {
         self.len = 0;
@@ -45,8 +45,19 @@ impl ConstraintSet {
         }
     }
 
+    /// The admissible vector nearest to the wanted one, and the number of constraints that decide it.
+    pub fn nearest_to(&mut self, wanted: Vec3) -> (Vec3, usize) {
+        project_onto_constraints(wanted, self.as_slice())
+            .or_else(|_| {
+                // Two walls that both ask for more distance: neither gets it.
+                self.allow_rest();
+                project_onto_constraints(wanted, self.as_slice())
+            })
+            .unwrap_or((Vec3::ZERO, self.len))
+    }
+
     /// Lets every constraint accept rest.
-    pub fn allow_rest(&mut self) {
+    fn allow_rest(&mut self) {
         for constraint in &mut self.all[..self.len] {
             constraint.least = constraint.least.min(0.0);
         }

@@ -32,6 +32,14 @@ pub enum NavigatorError {
     /// The axis of a guide has no length.
     #[error("the axis or normal of a guide must be a direction, and its point finite")]
     GuideDirection,
+    /// The range of depths of a point of entry is empty.
+    #[error("the depth of a guide is from {:.3} mm to {:.3} mm; the second must be larger", least_m * 1e3, most_m * 1e3)]
+    GuideDepth {
+        /// Least length of the shaft beyond the point, metres.
+        least_m: f64,
+        /// Largest length, metres.
+        most_m: f64,
+    },
     /// A setting is not usable.
     #[error("{name} is {value}; it must be {wanted}")]
     Setting {

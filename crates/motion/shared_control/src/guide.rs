@@ -1,8 +1,8 @@
-//! Guides: the hand moves the tool along a line, in a plane, in a cone or in a tube.
+//! Guides: the hand moves the tool along a line, in a plane, in a cone or in a tube, or through a point of entry.
 
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{Pose, Vec3};
 
-use crate::NavigatorError;
+use crate::{NavigatorError, RemoteCenter};
 
 /// Share of the tolerance by which the line may leave a straight motion. A tool that always moves towards a point ahead on a
 /// circle goes on an inner circle, four times as far away as that.
@@ -15,7 +15,7 @@ const LOOK_AHEAD: usize = 64;
 /// Halvings in the search for the farthest point in a straight line.
 const HALVINGS: usize = 30;
 
-/// A set of places in which a desired point is kept: it takes the place of the nearest point.
+/// A set of places in which a desired point is kept, or of poses with the shaft of the tool at a point of entry.
 ///
 /// A line or tube may bend. Its nearest point is looked for along it, from the tool on, not on another branch that passes
 /// near by; and it is never farther ahead than a straight motion of the tool stays within the tolerance, so the tool
@@ -25,12 +25,13 @@ const HALVINGS: usize = 30;
 ///
 /// ```
 /// use elbowroom_shared_control::Guide;
-/// use elbowroom_spatial::Vec3;
+/// use elbowroom_spatial::{Pose, Vec3};
 /// let mut seam = Guide::path(vec![Vec3::ZERO, Vec3::X, Vec3::X + Vec3::Y], 0.0, 0.0005)?;
-/// let tool = Vec3::new(0.4, 0.0, 0.0);
-/// assert_eq!(seam.toward(tool, Vec3::new(0.6, 0.2, 0.1)), Vec3::new(0.6, 0.0, 0.0));
+/// let tool = Pose::from_translation(Vec3::new(0.4, 0.0, 0.0));
+/// let mut toward = |hand: Vec3| seam.toward(&tool, &Pose::from_translation(hand)).translation;
+/// assert_eq!(toward(Vec3::new(0.6, 0.2, 0.1)), Vec3::new(0.6, 0.0, 0.0));
 /// // Round the corner only once the tool is there.
-/// assert!(seam.toward(tool, Vec3::new(1.2, 0.8, 0.0)).distance(Vec3::X) < 0.001);
+/// assert!(toward(Vec3::new(1.2, 0.8, 0.0)).distance(Vec3::X) < 0.001);
 /// # Ok::<(), elbowroom_shared_control::NavigatorError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +51,8 @@ enum GuideShape {
     Plane { at: Vec3, normal: Vec3 },
     /// Everything within an angle of a half-line from `apex` along `axis`.
     Cone { apex: Vec3, axis: Vec3, half_angle: (f64, f64) },
+    /// All poses with the shaft at a point.
+    Entry(RemoteCenter),
 }
 
 impl Guide {
@@ -90,9 +93,40 @@ impl Guide {
         Ok(Self { shape, tolerance_m: 0.0, tool: (0, 0.0) })
     }
 
-    /// The place to which a tool moves that is at `tool` while the hand is at `desired` (world, metres).
-    pub fn toward(&mut self, tool: Vec3, desired: Vec3) -> Vec3 {
+    /// A fixed point of entry (world, metres): the shaft, which has this direction in the frame of the tool point, always
+    /// passes within `radius_m` of it. Its length beyond the point stays within `depth_m` (least and most, metres; may be
+    /// infinite) once it is there; before, the tool may be withdrawn, but not moved deeper than the most.
+    ///
+    /// The tool must be turned as well: [`SurfaceNavigator::set_remote_center`] does that in every step, and
+    /// [`GuidedArm::set_guide`] calls it.
+    ///
+    /// [`SurfaceNavigator::set_remote_center`]: crate::SurfaceNavigator::set_remote_center
+    /// [`GuidedArm::set_guide`]: crate::GuidedArm::set_guide
+    ///
+    /// # Errors
+    /// An axis without length, a point that is not finite, a negative radius, or an empty range of depths.
+    pub fn entry(at: Vec3, axis_in_tool: Vec3, radius_m: f64, depth_m: (f64, f64)) -> Result<Self, NavigatorError> {
+        let center = RemoteCenter::new(at, axis_in_tool, radius_m, depth_m)?;
+        Ok(Self { shape: GuideShape::Entry(center), tolerance_m: 0.0, tool: (0, 0.0) })
+    }
+
+    /// The point of entry, if the guide is one.
+    pub fn remote_center(&self) -> Option<&RemoteCenter> {
+        if let GuideShape::Entry(center) = &self.shape { Some(center) } else { None }
+    }
+
+    /// The pose to which a tool moves while the hand is at `desired` (poses of the tool point, in the world). Only a point of
+    /// entry changes the orientation.
+    pub fn toward(&mut self, tool: &Pose, desired: &Pose) -> Pose {
+        if let GuideShape::Entry(center) = &self.shape {
+            return center.toward(tool, desired);
+        }
+        Pose::new(desired.rotation, self.place_toward(tool.translation, desired.translation))
+    }
+
+    fn place_toward(&mut self, tool: Vec3, desired: Vec3) -> Vec3 {
         match &self.shape {
+            GuideShape::Entry(_) => desired,
             GuideShape::Plane { at, normal } => desired - *normal * normal.dot(desired - *at),
             GuideShape::Cone { apex, axis, half_angle } => nearest_in_cone(*apex, *axis, *half_angle, desired),
             GuideShape::Path { points, radius_m } => {
@@ -110,9 +144,12 @@ impl Guide {
         }
     }
 
-    /// Distance of a point from the guide, metres; 0 inside. Of a line or tube, its nearest part counts.
-    pub fn distance_m(&self, point: Vec3) -> f64 {
+    /// Distance of a tool point from the guide, metres; 0 inside. Of a line or tube, its nearest part counts; of a point of
+    /// entry, the distance at which the shaft passes.
+    pub fn distance_m(&self, tool: &Pose) -> f64 {
+        let point = tool.translation;
         match &self.shape {
+            GuideShape::Entry(center) => (center.offset_m(tool) - center.radius_m()).max(0.0),
             GuideShape::Plane { at, normal } => normal.dot(point - *at).abs(),
             GuideShape::Cone { apex, axis, half_angle } => {
                 nearest_in_cone(*apex, *axis, *half_angle, point).distance(point)

@@ -132,6 +132,7 @@ impl<'s> GuidedArm<'s> {
 
     /// Keeps the hand within a guide from the next step on; `None` lets it move freely.
     pub fn set_guide(&mut self, guide: Option<Guide>) {
+        self.navigator.set_remote_center(guide.as_ref().and_then(Guide::remote_center).copied());
         self.guide = guide;
     }
 
@@ -234,12 +235,11 @@ impl<'s> GuidedArm<'s> {
     /// The desired pose within the guide.
     fn guided(&mut self, desired: Option<&Pose>) -> Option<Pose> {
         let desired = *desired?;
-        let tool = self.navigator.tool_in_world().translation;
-        let translation = match &mut self.guide {
-            Some(guide) if desired.is_finite() => guide.toward(tool, desired.translation),
-            _ => desired.translation,
-        };
-        Some(Pose::new(desired.rotation, translation))
+        let tool = self.navigator.tool_in_world();
+        match &mut self.guide {
+            Some(guide) if desired.is_finite() => Some(guide.toward(&tool, &desired)),
+            _ => Some(desired),
+        }
     }
 
     fn place(&mut self) -> ArmPlace<'_> {

@@ -5,7 +5,7 @@
 //! | [`SurfaceNavigator`] | one tick: moves a tool towards a desired pose, around [`ProtectedSurface`]s |
 //! | [`GuidedArm`] | moves a whole arm with its tool; the arm never touches anything |
 //! | [`NavigatorSettings`] | gap, speed, acceleration |
-//! | [`Guide`] | keeps the hand on a line, in a plane, in a cone or in a tube |
+//! | [`Guide`] | keeps the hand on a line, in a plane, in a cone or in a tube, or the shaft at a point of entry |
 //! | [`force`] | a tool with a mass, fields that repel it, and what the hand feels |
 //! | [`generate_shield`] | a surface that protects a solid and is opened along a target |
 //! | [`project_onto_constraints`] | the admissible velocity nearest to a desired one, or displacement |
@@ -47,6 +47,7 @@ mod guided_arm;
 mod navigation_step;
 mod navigator_settings;
 mod protected_surface;
+mod remote_center;
 mod shield;
 mod surface_clearance;
 mod surface_navigator;
@@ -58,5 +59,6 @@ pub use guided_arm::{ArmLimit, GuidedArm, GuidedStep};
 pub use navigation_step::{Limit, NavigationStep};
 pub use navigator_settings::NavigatorSettings;
 pub use protected_surface::ProtectedSurface;
+pub use remote_center::RemoteCenter;
 pub use shield::{Passage, Shield, ShieldError, ShieldSettings, ShieldTarget, generate_shield, line_on_surface};
 pub use surface_navigator::SurfaceNavigator;

@@ -25,6 +25,8 @@ pub enum Limit {
     Surface,
     /// The proof of the step ended before its end.
     Proof,
+    /// The point of entry: the shaft is not there yet, or cannot turn about it as the motion of the tip demands.
+    Entry,
     /// The desired pose has a number that is not finite: the tool stands.
     PoseNotFinite,
     /// The duration of the step is not positive or above [`NavigatorSettings::longest_step_s`]: the tool stands.

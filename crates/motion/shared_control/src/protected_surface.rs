@@ -3,10 +3,13 @@
 use std::sync::Arc;
 
 use elbowroom_proximity::TriMesh;
-use elbowroom_proximity::advanced::NormalConeHierarchy;
-use elbowroom_spatial::Pose;
+use elbowroom_proximity::advanced::{LocalMinimum, NormalConeHierarchy};
+use elbowroom_spatial::{Pose, Vec3};
 
 use crate::NavigatorError;
+
+/// Distance below which the line between two nearest points has no usable direction, metres.
+const TOUCHING_M: f64 = 1e-9;
 
 /// The closed surface of a solid, placed in the world.
 #[derive(Debug, Clone)]
@@ -38,6 +41,20 @@ impl ProtectedSurface {
     #[must_use]
     pub fn switched(self, is_on: bool) -> Self {
         Self { is_on, ..self }
+    }
+
+    /// The unit vector along which the distance of a tool, the first body of the minimum, grows.
+    pub(crate) fn away(&self, near: &LocalMinimum) -> Vec3 {
+        let apart = near.separation.on_a - near.separation.on_b;
+        if near.separation.distance > TOUCHING_M
+            && let Some(direction) = apart.try_normalize()
+        {
+            return direction;
+        }
+        let mesh = self.surface.mesh();
+        let [a, b, c] = mesh.triangles()[near.triangle_b as usize].map(|v| mesh.vertices()[v as usize]);
+        let normal = (b - a).cross(c - a).try_normalize().unwrap_or(Vec3::Z);
+        self.in_world.transform_vector(normal)
     }
 }
 

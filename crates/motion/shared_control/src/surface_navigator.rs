@@ -8,13 +8,18 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::constraint_set::ConstraintSet;
 use crate::navigation_step::{Limit, NavigationStep};
+use crate::remote_center::{PivotMotion, RemoteCenter};
 use crate::surface_clearance::{SurfaceClearance, Tool};
-use crate::{LinearConstraint, NavigatorError, NavigatorSettings, ProtectedSurface, project_onto_constraints};
+use crate::{LinearConstraint, NavigatorError, NavigatorSettings, ProtectedSurface};
 
 /// Most distance queries per step and surface in the proof of a step that is longer than the gap.
 const PROOF_STEPS: usize = 32;
-/// Distance below which the line between two nearest points has no usable direction, metres.
-const TOUCHING_M: f64 = 1e-9;
+/// Relative rounding of an angle.
+const ROUNDING: f64 = 1e-6;
+/// Angular deceleration of a tool that turns to its point of entry, rad/s².
+const TURN_BRAKING_RAD_S2: f64 = 5.0;
+/// How often a step that turns the tool about its point of entry, and is not proven, is halved.
+const PIVOT_HALVINGS: usize = 5;
 
 /// Moves a tool towards a desired pose, step by step, around surfaces that it never enters.
 ///
@@ -36,7 +41,16 @@ pub struct SurfaceNavigator {
     /// The velocities that the surfaces nearby admit, and the displacements.
     velocities: ConstraintSet,
     displacements: ConstraintSet,
+    center: Option<RemoteCenter>,
     workspace: Box<Workspace>,
+}
+
+/// What became of a travel: the fraction that was made, and the motion that is proven beyond it (m).
+struct Carried {
+    fraction: f64,
+    turned_rad: f64,
+    slack_m: f64,
+    limit: Option<Limit>,
 }
 
 /// What the tool is to do in a step.
@@ -74,6 +88,7 @@ impl SurfaceNavigator {
             before: (tool_in_world, Vec3::ZERO),
             velocities: ConstraintSet::EMPTY,
             displacements: ConstraintSet::EMPTY,
+            center: None,
             workspace: Box::new(Workspace::new()),
         };
         let gap_m = navigator.least_distance(tool_in_world, 2.0 * settings.least_gap_m);
@@ -156,6 +171,14 @@ impl SurfaceNavigator {
         Ok(())
     }
 
+    /// Keeps the shaft of the tool at a point of entry from the next step on; `None` lets it move freely.
+    ///
+    /// Each step turns the tool with its tip, which moves no faster than the tool may turn. A tool that is placed elsewhere
+    /// turns until its shaft is there, and only then moves.
+    pub fn set_remote_center(&mut self, center: Option<RemoteCenter>) {
+        self.center = center;
+    }
+
     /// Distance of the tool from a protected surface, by its index. `None` if the distance exceeds `limit_m`, or there is
     /// no such surface, or it is off.
     pub fn separation_from(&mut self, surface: usize, limit_m: f64) -> Option<Separation> {
@@ -199,33 +222,76 @@ impl SurfaceNavigator {
             Wish::Velocity(_) => split_braking(self.velocity, change),
         };
         let share = if change.length() > largest_change { largest_change / change.length() } else { 1.0 };
-        let (velocity, now) = project(self.velocity + braking + change * share, &mut self.velocities);
+        let (step_s, turn_rad) = (dt_s * speed_override, self.settings.turn_rad_s * dt_s * speed_override);
+        let wanted = self.slowed_aside(self.velocity + braking + change * share, step_s, turn_rad);
+        let (velocity, now) = self.velocities.nearest_to(wanted);
         // Two walls that are nearly opposite can ask for a velocity far above that of either.
         let velocity = velocity * (self.settings.speed_m_s / velocity.length()).min(1.0);
         let active_rows = now.max(on_the_way);
-        let travel = velocity * (dt_s * speed_override);
+        let travel = velocity * step_s;
         // The proof does not rely on the constraints: their search uses normals, and this distance does not.
-        let turn_rad = match wish {
-            Wish::Pose(_) => self.settings.turn_rad_s * dt_s * speed_override,
-            Wish::Velocity(_) => 0.0,
-        };
-        let turn_m = self.tool_reach_m * turn_rad;
+        let turns = self.center.is_some() || matches!(wish, Wish::Pose(_));
+        let turn_m = if turns { self.tool_reach_m * turn_rad } else { 0.0 };
         let slack_limit_m = travel.length() + turn_m + self.settings.least_gap_m;
         let distance_m = self.least_distance(self.tool_in_world, slack_limit_m);
-        let slack_m = (distance_m - self.settings.least_gap_m).max(0.0);
-        let proven = if travel.length() <= slack_m { 1.0 } else { self.proven_share(travel) };
-        self.velocity = velocity * proven;
-        self.tool_in_world.translation += travel * proven;
+        let carried = self.carry(travel, turn_rad, (distance_m - self.settings.least_gap_m).max(0.0));
+        self.velocity = velocity * carried.fraction;
         if let Wish::Pose(desired) = wish {
-            let left_m = if proven < 1.0 { 0.0 } else { (slack_m - travel.length()).max(0.0) };
-            self.turn_towards(desired, turn_rad, left_m);
+            self.turn_towards(desired, turn_rad - carried.turned_rad, carried.slack_m);
         }
-        let limit = if proven < 1.0 { Some(Limit::Proof) } else { (active_rows > 0).then_some(Limit::Surface) };
+        let limit = carried.limit.or_else(|| (active_rows > 0).then_some(Limit::Surface));
         let is_near = distance_m < slack_limit_m;
         let is_in_range = !self.velocities.as_slice().is_empty();
         let gap_m = if is_near { Some(distance_m) } else { is_in_range.then_some(gap_m) };
         let velocity = self.velocity * speed_override;
         NavigationStep { tool_in_world: self.tool_in_world, velocity, gap_m, active_rows, limit }
+    }
+
+    /// The velocity with which the tip may move so that the tool does not turn too fast about its point of entry.
+    fn slowed_aside(&self, velocity: Vec3, step_s: f64, turn_rad: f64) -> Vec3 {
+        let Some(center) = &self.center else { return velocity };
+        center.slowed_aside(&self.tool_in_world, velocity, step_s, turn_rad)
+    }
+
+    /// Moves the tool as far along a travel as a slack or a distance proves; with a point of entry it turns as well.
+    fn carry(&mut self, travel: Vec3, turn_rad: f64, slack_m: f64) -> Carried {
+        let Some(center) = self.center else {
+            let motion = PivotMotion { travel, turn: Vec3::ZERO };
+            let fraction = if travel.length() <= slack_m { 1.0 } else { self.proven_fraction(&motion) };
+            self.tool_in_world.translation += travel * fraction;
+            let slack_m = if fraction < 1.0 { 0.0 } else { (slack_m - travel.length()).max(0.0) };
+            let limit = (fraction < 1.0).then_some(Limit::Proof);
+            return Carried { fraction, turned_rad: 0.0, slack_m, limit };
+        };
+        let start = self.tool_in_world;
+        let missed_rad = center.missed_rad(&start);
+        let is_missed = missed_rad > 0.0;
+        let mut limit = is_missed.then_some(Limit::Entry);
+        // A shaft that is not at the point yet turns there, slow enough to stop, and its tip waits.
+        let slow_rad = (2.0 * TURN_BRAKING_RAD_S2 * missed_rad).sqrt() * (turn_rad / self.settings.turn_rad_s);
+        let (mut fraction, mut most_rad) = if is_missed {
+            (0.0, turn_rad.min(slow_rad))
+        } else {
+            (center.turnable_fraction(&start, travel, turn_rad), turn_rad)
+        };
+        for _ in 0..=PIVOT_HALVINGS {
+            let motion = center.motion(&start, travel * fraction, most_rad);
+            let needed_m = self.needed_m(&motion);
+            if needed_m <= slack_m || self.proven_fraction(&motion) >= 1.0 {
+                self.tool_in_world = motion.carried(&start, 1.0);
+                let slack_m = if is_missed { 0.0 } else { (slack_m - needed_m).max(0.0) };
+                return Carried { fraction, turned_rad: motion.turn.length(), slack_m, limit };
+            }
+            limit = limit.or(Some(Limit::Proof));
+            fraction *= 0.5;
+            most_rad *= if is_missed { 0.5 } else { 1.0 };
+        }
+        Carried { fraction: 0.0, turned_rad: 0.0, slack_m: 0.0, limit: Some(Limit::Entry) }
+    }
+
+    /// Largest motion of a point of the tool, metres.
+    fn needed_m(&self, motion: &PivotMotion) -> f64 {
+        motion.travel.length() + self.tool_reach_m * motion.turn.length()
     }
 
     /// Takes the last step back: what carries the tool could not follow it.
@@ -256,7 +322,7 @@ impl SurfaceNavigator {
     /// tool down along its surface. Also returns the number of constraints that keep it from the desired point.
     fn wanted_velocity(&mut self, desired: &Pose, dt_s: f64) -> (Vec3, usize) {
         let way = desired.translation - self.tool_in_world.translation;
-        let (way, active) = project(way, &mut self.displacements);
+        let (way, active) = self.displacements.nearest_to(way);
         let s = &self.settings;
         let distance = way.length();
         let speed = (distance / dt_s).min(s.speed_m_s).min((2.0 * s.acceleration_m_s2 * distance).sqrt());
@@ -266,7 +332,7 @@ impl SurfaceNavigator {
     /// Collects a constraint for every local minimum of the distance in the range that limits the speed of this step.
     /// Returns the least of these distances, at most the range; `None` if it is unknown.
     fn collect_constraints(&mut self, dt_s: f64, largest_change: f64) -> Option<f64> {
-        let Self { tool, surfaces, settings, tool_in_world, velocities, displacements, workspace, .. } = self;
+        let Self { tool, surfaces, settings, tool_in_world, velocities, displacements, center, workspace, .. } = self;
         velocities.clear();
         displacements.clear();
         let speed_m_s = settings.speed_m_s.min(self.velocity.length() + largest_change);
@@ -277,9 +343,15 @@ impl SurfaceNavigator {
             let add = |near: LocalMinimum| {
                 let distance_m = near.separation.distance;
                 gap_m = gap_m.min(near.separation.lower_bound);
-                let normal = away_from_surface(&near, surface, in_world);
-                velocities.push(LinearConstraint { normal, least: -settings.approach_speed(distance_m, dt_s) });
-                displacements.push(LinearConstraint { normal, least: settings.gap_m - distance_m });
+                let normal = protected.away(&near);
+                let speed = LinearConstraint { normal, least: -settings.approach_speed(distance_m, dt_s) };
+                let way = LinearConstraint { normal, least: settings.gap_m - distance_m };
+                for (set, row) in [(&mut *velocities, speed), (&mut *displacements, way)] {
+                    let at_tip = |center: &RemoteCenter| center.at_tip(tool_in_world, near.separation.on_a, row);
+                    if let Some(row) = center.as_ref().map_or(Some(row), at_tip) {
+                        set.push(row);
+                    }
+                }
             };
             if !for_each_local_minimum(tool, tool_in_world, surface, in_world, range_m, workspace, add) {
                 return None;
@@ -288,11 +360,12 @@ impl SurfaceNavigator {
         Some(gap_m)
     }
 
-    /// The share of the travel for which the distance provably stays above the least gap. Each step of the proof advances
+    /// The fraction of a motion for which the distance provably stays above the least gap. Each step of the proof advances
     /// by the distance there less the least gap.
-    fn proven_share(&mut self, travel: Vec3) -> f64 {
-        let length = travel.length();
-        let mut at = self.tool_in_world;
+    fn proven_fraction(&mut self, motion: &PivotMotion) -> f64 {
+        let length = self.needed_m(motion);
+        let start = self.tool_in_world;
+        let mut at = start;
         let mut gone = 0.0;
         for _ in 0..PROOF_STEPS {
             let left = length - gone;
@@ -304,7 +377,7 @@ impl SurfaceNavigator {
                 break;
             }
             gone += slack;
-            at.translation = self.tool_in_world.translation + travel * (gone / length);
+            at = motion.carried(&start, gone / length);
         }
         gone / length
     }
@@ -329,15 +402,28 @@ impl SurfaceNavigator {
 
     /// Turns the tool about its point as far as the slack proves.
     fn turn_towards(&mut self, desired: &Pose, turn_rad: f64, slack_m: f64) {
-        let way = (desired.rotation * self.tool_in_world.rotation.inverse()).to_rotation_vector();
+        let (here, center) = (self.tool_in_world, self.center);
+        let wanted = center.map_or(desired.rotation, |center| center.turned(&here, desired.rotation).rotation);
+        let way = (wanted * here.rotation.inverse()).to_rotation_vector();
         let angle = way.length();
-        let provable = if self.tool_reach_m > 0.0 { slack_m / self.tool_reach_m } else { f64::INFINITY };
-        let turned = angle.min(turn_rad).min(provable);
+        let lever_m = self.tool_reach_m + center.map_or(0.0, |center| center.slide_per_angle_m());
+        let most = turn_rad.min(if lever_m > 0.0 { slack_m / lever_m } else { f64::INFINITY });
+        let mut turned = angle.min(most);
         if !(turned > 0.0) {
             return;
         }
-        let turn = Rotation::from_rotation_vector(way * (turned / angle));
-        self.tool_in_world.rotation = (turn * self.tool_in_world.rotation).renormalized();
+        for _ in 0..=PIVOT_HALVINGS {
+            let turn = Rotation::from_rotation_vector(way * (turned / angle));
+            let rotation = (turn * here.rotation).renormalized();
+            // On the way from one orientation with the shaft at the point to another, it may leave the point.
+            let end = center.map_or(Pose::new(rotation, here.translation), |center| center.turned(&here, rotation));
+            let whole = if center.is_some() { (end.rotation * here.rotation.inverse()).angle() } else { turned };
+            if whole <= most * (1.0 + ROUNDING) {
+                self.tool_in_world = end;
+                return;
+            }
+            turned *= most / whole;
+        }
     }
 }
 
@@ -351,29 +437,4 @@ pub(crate) fn split_braking(velocity: Vec3, change: Vec3) -> (Vec3, Vec3) {
 /// A share of a speed, 0 to 1; NaN counts as 0.
 fn within_unit(share: f64) -> f64 {
     if share > 0.0 { share.min(1.0) } else { 0.0 }
-}
-
-/// The admissible vector nearest to the wanted one, and the number of constraints that decide it.
-fn project(wanted: Vec3, constraints: &mut ConstraintSet) -> (Vec3, usize) {
-    project_onto_constraints(wanted, constraints.as_slice())
-        .or_else(|_| {
-            // Two walls that both ask for more distance: neither gets it.
-            constraints.allow_rest();
-            project_onto_constraints(wanted, constraints.as_slice())
-        })
-        .unwrap_or((Vec3::ZERO, constraints.as_slice().len()))
-}
-
-/// The unit vector along which the distance grows.
-fn away_from_surface(near: &LocalMinimum, surface: &NormalConeHierarchy, surface_in_world: &Pose) -> Vec3 {
-    let apart = near.separation.on_a - near.separation.on_b;
-    if near.separation.distance > TOUCHING_M
-        && let Some(direction) = apart.try_normalize()
-    {
-        return direction;
-    }
-    let mesh = surface.mesh();
-    let [a, b, c] = mesh.triangles()[near.triangle_b as usize].map(|v| mesh.vertices()[v as usize]);
-    let normal = (b - a).cross(c - a).try_normalize().unwrap_or(Vec3::Z);
-    surface_in_world.transform_vector(normal)
 }

@@ -33,6 +33,28 @@ fn main() {
     }
     assert!(in_contact > 500, "{in_contact} of 6000 steps in contact");
     whole_arm();
+    point_of_entry();
+}
+
+/// An arm whose shaft glides at a point of entry.
+fn point_of_entry() {
+    let (scene, start) = arm::scene(Some(0.03));
+    let mut guided = arm::guided(&scene, start, true);
+    let at = start.translation - start.rotation * Vec3::Z * 0.06;
+    guided.set_guide(Some(Guide::entry(at, Vec3::Z, 0.0, (0.02, 0.1)).unwrap()));
+    let mut random = SplitMix(3);
+    let (mut moved, mut velocities) = (0.0, [0.0; 6]);
+    for k in 0..100 {
+        let desired = Pose::new(start.rotation, start.translation + point(&mut random, 0.05) - Vec3::Z * 0.03);
+        let (before, counter) = (guided.tool_in_world(), AllocationCounter::start());
+        for _ in 0..20 {
+            guided.step(Some(&desired), arm::DT_S, 1.0);
+            guided.intent(Some(&desired), arm::DT_S, &mut velocities);
+        }
+        assert!(k == 0 || counter.changes() == 0, "{} in round {k}", counter.changes());
+        moved += (guided.tool_in_world().rotation * before.rotation.inverse()).angle();
+    }
+    assert!(moved > 0.5, "{moved} rad");
 }
 
 /// An arm with a virtual mass, a field around the tool, one around the arm, and a guide.

@@ -2,6 +2,7 @@
 
 mod common;
 mod constraint_projection;
+mod entry;
 mod forces;
 mod guided_arm;
 mod guides;

@@ -171,8 +171,8 @@ fn tables(guidance: &mut GuidanceSpec, objects: &[ObjectSpec], tool: Pose, rando
     if let Some(table) = boxed.and_then(|object| shield(object, random)) {
         guidance.tables.push(table);
     }
-    if random.percent(20) {
-        guidance.tables.push(guide(tool.translation, random));
+    if random.percent(30) {
+        guidance.tables.push(guide(tool, random));
     }
     let other = match boxed {
         Some(_) if guidance.tables.iter().any(|t| t.contains("protects")) => "shield",
@@ -226,24 +226,46 @@ fn shield(object: &ObjectSpec, random: &mut Random) -> Option<String> {
     ))
 }
 
-fn guide(tool: Vec3, random: &mut Random) -> String {
-    let near = |random: &mut Random, most: f64| list(&(tool + vector(random, most)).to_array());
+fn guide(tool: Pose, random: &mut Random) -> String {
+    let at = tool.translation;
+    let near = |random: &mut Random, most: f64| list(&(at + vector(random, most)).to_array());
     let head = "[fixture.guide]\ntool = \"r0\"\n";
     let line = |random: &mut Random| {
         let points: Vec<String> = (0..random.whole(2, 6)).map(|_| near(random, 0.15)).collect();
         format!("points = [{}]\n", points.join(", "))
     };
-    match random.whole(0, 3) {
+    match random.whole(0, 5) {
         0 => format!("{head}guide = \"line\"\n{}", line(random)),
         1 => format!("{head}guide = \"tube\"\n{}radius = {}\n", line(random), random.scaled(0.002, 0.05)),
         2 => format!("{head}guide = \"plane\"\nat = {}\nnormal = {}\n", near(random, 0.02), list(&random.vector(1.0))),
-        _ => format!(
+        3 => format!(
             "{head}guide = \"cone\"\nat = {}\naxis = {}\nhalf_angle = {}\n",
             near(random, 0.1),
             list(&random.vector(1.0)),
             random.between(0.05, 1.5)
         ),
+        _ => format!("{head}guide = \"entry\"\n{}", entry(tool, random)),
     }
+}
+
+/// A point of entry on the shaft of a tool, before or beyond its tip, or up to 20 mm beside it.
+fn entry(tool: Pose, random: &mut Random) -> String {
+    let axis = if random.percent(60) { Vec3::Z } else { vector(random, 1.0) };
+    let shaft = tool.rotation * axis.try_normalize().unwrap_or(Vec3::Z);
+    let depth_m = random.between(-0.1, 0.15);
+    let beside = if random.percent(20) { vector(random, 0.02) } else { Vec3::ZERO };
+    let mut keys = format!("at = {}\n", list(&(tool.translation - shaft * depth_m + beside).to_array()));
+    if axis != Vec3::Z {
+        _ = writeln!(keys, "axis = {}", list(&axis.to_array()));
+    }
+    if random.percent(25) {
+        _ = writeln!(keys, "radius = {}", random.scaled(0.0002, 0.01));
+    }
+    if random.percent(40) {
+        let least_m = random.between(-0.05, 0.05);
+        _ = writeln!(keys, "depth = [{least_m}, {}]", least_m + random.between(0.005, 0.1));
+    }
+    keys
 }
 
 fn force(name: &str, own: &str, other: &str, laws: &[&str], random: &mut Random) -> String {

@@ -18,6 +18,8 @@ pub enum Finding {
     TooNear { robot: usize, object: usize, t_s: f64, distance_m: f64, least_m: f64 },
     /// The forces of a guided tool gave more energy than they got.
     EnergyMade { robot: usize, t_s: f64, energy_j: f64 },
+    /// The shaft of a guided tool left its point of entry, or its depth there, by this distance.
+    OffEntry { robot: usize, t_s: f64, off_m: f64 },
     /// The work-piece of a virtual robot moved in the hand that holds it.
     NotHeld { robot: usize, t_s: f64, by_m: f64 },
     /// The work-piece of a virtual robot left its desired path.

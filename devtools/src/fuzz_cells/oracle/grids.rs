@@ -94,30 +94,36 @@ impl Place<'_> {
     /// The coordinate of an axis; that of a joint that turns without end within a turn from its low end.
     fn wrapped(&self, coordinates: &[f64], k: usize) -> f64 {
         let (axis, mut x) = (&self.of_robot.grid.axes[k], coordinates[k]);
-        if let GridSpace::Joints(joints) = &self.of_robot.grid.space {
-            let chain = &self.robot.robot.chain;
-            if chain.joints()[chain.active_joints()[joints[k]].0].kind == JointKind::Continuous {
-                while x < axis.from {
-                    x += std::f64::consts::TAU;
-                }
-                while x >= axis.from + std::f64::consts::TAU {
-                    x -= std::f64::consts::TAU;
-                }
+        if self.turns(k) {
+            while x < axis.from {
+                x += std::f64::consts::TAU;
+            }
+            while x >= axis.from + std::f64::consts::TAU {
+                x -= std::f64::consts::TAU;
             }
         }
         x
     }
 
-    /// Whether the coordinates are in a cell, or at most `beyond` off it.
+    /// Whether the coordinates are in a cell, or at most `beyond` off it, in any turn.
     fn is_in(&self, coordinates: &[f64], number: u64, beyond: f64) -> bool {
         let mut rest = number - 1;
         let is_in = |(k, axis): (usize, &elbowroom_monitor::GridAxis)| {
             let count = u64::from(axis.count);
             let (place, width) = ((rest % count) as f64, (axis.to - axis.from) / count as f64);
             rest /= count;
+            let turn = if self.turns(k) { std::f64::consts::TAU } else { 0.0 };
             let x = self.wrapped(coordinates, k);
-            x >= axis.from + place * width - beyond && x <= axis.from + (place + 1.0) * width + beyond
+            let low = axis.from + place * width - beyond;
+            [x - turn, x, x + turn].iter().any(|x| *x >= low && *x <= low + width + 2.0 * beyond)
         };
         self.of_robot.grid.axes.iter().enumerate().all(is_in) && rest == 0
+    }
+
+    /// Whether an axis is that of a joint that turns without end.
+    fn turns(&self, k: usize) -> bool {
+        let GridSpace::Joints(joints) = &self.of_robot.grid.space else { return false };
+        let chain = &self.robot.robot.chain;
+        chain.joints()[chain.active_joints()[joints[k]].0].kind == JointKind::Continuous
     }
 }

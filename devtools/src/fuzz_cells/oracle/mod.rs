@@ -8,6 +8,7 @@
 mod arm;
 mod carrier;
 mod cooperating;
+mod entry;
 mod exchange;
 pub mod findings;
 mod frame;
@@ -57,6 +58,7 @@ pub fn check(
     exchange::check(&motion, &guarded, promises, has_violation, &mut findings);
     physics::check(cell, recording, &mut findings);
     guided::check(cell, recording, &arms, &mut findings);
+    entry::check(cell, recording, &arms, &mut findings);
     cooperating::check(cell, recording, &arms, &mut findings);
     kept_axes::check(cell, recording, &arms, &mut findings);
     grids::check(cell, recording, &arms, &mut findings);

@@ -350,6 +350,32 @@ fn a_guided_tool_that_is_too_near_and_energy_that_is_made_are_found() {
 }
 
 #[test]
+fn a_shaft_that_leaves_its_point_of_entry_or_its_depth_is_found() {
+    let folder = std::env::temp_dir().join(format!("elbowroom-entry-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    // 60 mm behind the tip at the start.
+    let port =
+        "[fixture.port]\nguide = \"entry\"\ntool = \"r0\"\nat = [1.0550508, 0, 1.3932146]\ndepth = [0.02, 0.09]\n";
+    let (cell, mut outcome) = guided(port, &folder);
+    std::fs::remove_dir_all(&folder).unwrap();
+    let found = |outcome: &RunOutcome| {
+        let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
+        let mut findings = Findings::default();
+        super::entry::check(&cell, &outcome.recording, &arms, &mut findings);
+        findings.list
+    };
+    assert_eq!(found(&outcome), []);
+    let q = outcome.recording.robots[0].samples.last().unwrap().q.clone();
+    // The last joint turns the tool about its shaft, the fifth tilts it by 0.1 mrad.
+    for (joint, by, is_found) in [(5, 0.3, false), (4, 1e-4, true)] {
+        let last = outcome.recording.robots[0].samples.last_mut().unwrap();
+        last.q.clone_from(&q);
+        last.q[joint] += by;
+        assert_eq!(matches!(found(&outcome)[..], [Finding::OffEntry { robot: 0, .. }]), is_found, "joint {joint}");
+    }
+}
+
+#[test]
 fn a_work_piece_that_is_dropped_or_off_its_path_and_joints_that_are_too_fast_are_found() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut cell = Cell::load(root.join("examples/inspection/cell.toml")).unwrap();

@@ -9,8 +9,8 @@ use elbowroom_vision::Point2;
 
 use super::schema::{GATE, names};
 use super::sensor::two;
-use crate::Units;
-use crate::fence::{Fence, FenceError, Gate};
+use crate::fence::{Fence, FenceError, Gate, mesh_of_boxes};
+use crate::{RegionSolid, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -22,7 +22,7 @@ const MOST_CORNERS: usize = 500;
 const THICKNESS_M: f64 = 0.05;
 
 /// The region of a fence: the solid of its walls.
-pub(super) fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
+pub(super) fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<(Region, RegionSolid)> {
     let corners = t.need("corners", CORNERS)?;
     let listed = corners.list(CORNERS)?;
     if !(3..=MOST_CORNERS).contains(&listed.len()) {
@@ -44,8 +44,10 @@ pub(super) fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
         thickness_m: t.get("thickness").map_or(Ok(THICKNESS_M), |v| units.positive_length(&v))?,
         gates,
     };
-    let mesh = fence.mesh().map_err(|e| refused(t, &corners, &e, units))?;
-    Ok(Region::solid(name, Shape::Mesh(mesh.into()), Pose::IDENTITY))
+    let refused = |e: FenceError| refused(t, &corners, &e, units);
+    let walls = fence.boxes().map_err(refused)?;
+    let mesh = mesh_of_boxes(&walls).map_err(|e| refused(e.into()))?;
+    Ok((Region::solid(name, Shape::Mesh(mesh.into()), Pose::IDENTITY), RegionSolid::Walls(walls)))
 }
 
 fn gate(v: &Value<'_>, units: Units, [bottom_m, top_m]: [f64; 2]) -> Result<Gate> {

@@ -20,6 +20,8 @@ const HYSTERESIS_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 const HALF_TURNS: [f64; 2] = [-std::f64::consts::PI, std::f64::consts::PI];
 /// Divisions of an axis, at most.
 const MOST_DIVISIONS: u32 = 65_535;
+/// Cells of a grid, at most.
+const MOST_CELLS: u64 = 65_535;
 
 /// Reads the grids of all robots.
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
@@ -61,8 +63,48 @@ fn grid(name: &str, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Gr
         return Err(cells.error(what).hint("one number per axis of the box or per joint; 1 leaves an axis undivided"));
     }
     let axes = ends.iter().zip(counts).map(|([from, to], count)| GridAxis { from: *from, to: *to, count }).collect();
-    let output = t.need("output", "output = 8")?.whole(0, 63)? as u8;
-    Ok(Grid { name: name.into(), space, axes, output, hysteresis })
+    let output = t.need("output", "output = 8")?;
+    let grid = Grid { name: name.into(), space, axes, output: output.whole(0, 63)? as u8, hysteresis };
+    if grid.cells() > MOST_CELLS {
+        let what = format!("makes {} cells, more than {MOST_CELLS}", grid.cells());
+        return Err(cells.error(what).hint("fewer divisions, or a grid for each part"));
+    }
+    if grid.channels().end > 64 {
+        let what = format!(
+            "numbers up to {} take {} outputs from here, and the last is 63",
+            grid.cells(),
+            grid.channels().len()
+        );
+        return Err(output.error(what).hint(format!("output = {}   (or lower)", 64 - grid.channels().len())));
+    }
+    check_hysteresis(&grid, t, units, robot)?;
+    Ok(grid)
+}
+
+/// At most half of the smallest cell.
+fn check_hysteresis(grid: &Grid, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<()> {
+    let smallest = grid.axes.iter().map(|a| (a.to - a.from) / f64::from(a.count)).fold(f64::INFINITY, f64::min);
+    if grid.hysteresis <= 0.5 * smallest {
+        return Ok(());
+    }
+    let slides = match &grid.space {
+        GridSpace::Tcp { .. } => true,
+        GridSpace::Joints(joints) => joints.first().is_some_and(|joint| robot.slides(*joint)),
+    };
+    let [hysteresis, cell] = [grid.hysteresis, smallest].map(|length| units.show_joint(slides, length));
+    let what = format!("the hysteresis is {hysteresis}, more than half of a cell of {cell}");
+    let hint = "a smaller `hysteresis`, or fewer cells";
+    Err(t.get("hysteresis").map_or_else(|| t.error(&what), |v| v.error(format!("is too large: {what}"))).hint(hint))
+}
+
+fn no_such_joint(item: &Value<'_>, name: &str, robot: &CellRobot, known: &[String]) -> Diagnostic {
+    let chain = &robot.robot.chain;
+    if let Some(followed) = chain.joint(name).and_then(|joint| chain.mimic_source(joint)) {
+        let followed = &chain.joints()[followed.joint.0].name;
+        return item.error(format!("names the joint \"{name}\", which follows \"{followed}\"")).hint(followed.clone());
+    }
+    item.error(format!("names the joint \"{name}\", which robot \"{}\" does not have", robot.name))
+        .hint(suggest::hint(name, known.iter().map(String::as_str)))
 }
 
 /// The space of a grid, the ends of its axes and its hysteresis.
@@ -94,10 +136,7 @@ fn joints(v: &Value<'_>, t: &Table<'_>, units: Units, robot: &CellRobot) -> Resu
     let mut joints: Vec<usize> = Vec::new();
     for item in &v.list(EXAMPLE)? {
         let name = item.text()?;
-        let joint = known.iter().position(|n| n == name).ok_or_else(|| {
-            item.error(format!("names the joint \"{name}\", which robot \"{}\" does not have", robot.name))
-                .hint(suggest::hint(name, known.iter().map(String::as_str)))
-        })?;
+        let joint = known.iter().position(|n| n == name).ok_or_else(|| no_such_joint(item, name, robot, &known))?;
         if joints.contains(&joint) {
             return Err(item.error("is named twice").hint("each joint once"));
         }
@@ -124,9 +163,12 @@ fn joints(v: &Value<'_>, t: &Table<'_>, units: Units, robot: &CellRobot) -> Resu
         for ((end, number), slides) in ends.iter_mut().zip(numbers).zip(&slides) {
             end[side] = units.joint(*slides, number);
         }
-        if let Some(k) = ends.iter().position(|[from, to]| side == 1 && from >= to) {
-            return Err(v.error(format!("is not above `from` for joint \"{}\"", known[joints[k]])).hint("from < to"));
-        }
+    }
+    if let Some(k) = ends.iter().position(|[from, to]| from >= to) {
+        let [from, to] = ends[k].map(|end| units.show_joint(slides[k], end));
+        let what = format!("has no values for joint \"{}\": they would go from {from} to {to}", known[joints[k]]);
+        let at = t.get("to").or_else(|| t.get("from")).unwrap_or_else(|| v.clone());
+        return Err(at.error(what).hint("from < to, within the joint's limits"));
     }
     let default = if slides[0] { HYSTERESIS_M } else { HYSTERESIS_RAD };
     let hysteresis = t.get("hysteresis").map_or(Ok(default), |v| Ok(units.joint(slides[0], v.not_negative()?)))?;

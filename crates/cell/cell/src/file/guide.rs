@@ -1,17 +1,18 @@
-//! `[fixture.NAME]` with `guide`: where a hand is kept.
+//! `[fixture.NAME]` with `guide`: where a hand is kept, or where the shaft of a tool enters.
 
 use elbowroom_formats::Diagnostic;
-use elbowroom_formats::toml_tables::Table;
+use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_shared_control::Guide;
 use elbowroom_spatial::Vec3;
 
 use super::fixture_tool::{TOOL, tool};
 use super::schema::{GUIDE, names};
-use crate::Cell;
 use crate::fixture::CellGuide;
+use crate::{Cell, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
+const DEPTH: &str = "depth = [10, 80]   (least and most length of the shaft beyond the point)";
 const POINTS: &str = "points = [[1000, 0, 1240], [1030, 60, 1240]]   (in the world)";
 
 /// The words of `guide`, each with the keys of its geometry.
@@ -20,6 +21,7 @@ const SHAPES: &[(&str, &[&str])] = &[
     ("tube", &["points", "radius", "tolerance"]),
     ("plane", &["at", "normal"]),
     ("cone", &["at", "axis", "half_angle"]),
+    ("entry", &["at", "axis", "radius", "depth"]),
 ];
 
 pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellGuide> {
@@ -27,11 +29,12 @@ pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellGuide> 
     let word = t.need("guide", "guide = \"line\"")?;
     let words: Vec<(&str, usize)> = SHAPES.iter().enumerate().map(|(i, (word, _))| (*word, i)).collect();
     let (shape, keys) = SHAPES[word.word(&words)?];
+    let article = if shape == "entry" { "an" } else { "a" };
     let all = SHAPES.iter().flat_map(|(_, keys)| *keys);
     if let Some(v) = all.filter(|key| !keys.contains(key)).find_map(|key| t.get(key)) {
         return Err(v
-            .error(format!("does not belong to a {shape}"))
-            .hint(format!("a {shape} has {}", keys.join(", "))));
+            .error(format!("does not belong to {article} {shape}"))
+            .hint(format!("{article} {shape} has {}", keys.join(", "))));
     }
     let tool_value = t.need("tool", TOOL)?;
     let tool = tool(&tool_value, cell)?;
@@ -63,6 +66,12 @@ fn guide(
             }
             Guide::cone(at()?, t.need("axis", "axis = [0, 0, -1]")?.three()?, half_angle_rad)
         }
+        "entry" => {
+            let axis = t.get("axis").map_or(Ok(Vec3::Z), |v| v.three())?;
+            let radius_m = t.get("radius").map_or(Ok(0.0), |v| units.not_negative_length(&v))?;
+            let depth_m = t.get("depth").map_or(Ok((f64::NEG_INFINITY, f64::INFINITY)), |v| depth(&v, units))?;
+            Guide::entry(at()?, axis, radius_m, depth_m)
+        }
         _ => {
             let points = t.need("points", POINTS)?.list(POINTS)?;
             let points = points.iter().map(|v| units.point(v)).collect::<Result<Vec<Vec3>>>()?;
@@ -74,4 +83,17 @@ fn guide(
             Guide::path(points, radius_m, tolerance_m)
         }
     })
+}
+
+/// Least and most length of a shaft beyond its point of entry, metres.
+fn depth(v: &Value<'_>, units: Units) -> Result<(f64, f64)> {
+    let list = v.list(DEPTH)?;
+    let [least, most] = &list[..] else {
+        return Err(v.error(format!("has {} lengths", list.len())).hint(DEPTH));
+    };
+    let (least_m, most_m) = (units.length_of(least)?, units.length_of(most)?);
+    if least_m >= most_m {
+        return Err(v.error("is not from a smaller to a larger length").hint(DEPTH));
+    }
+    Ok((least_m, most_m))
 }

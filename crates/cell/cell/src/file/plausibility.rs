@@ -4,16 +4,16 @@ use std::ops::Range;
 
 use elbowroom_formats::Diagnostic;
 use elbowroom_formats::toml_tables::Table;
-use elbowroom_kinematics::{ChainState, JointKind, LinkId};
-use elbowroom_proximity::surroundings::cavity;
-use elbowroom_proximity::{Shape, Sphere, TriMesh, separation, within};
-use elbowroom_robot::{Collider, ObjectId};
+use elbowroom_kinematics::ChainState;
+use elbowroom_proximity::Shape;
+use elbowroom_robot::ObjectId;
 use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::region;
 use crate::frames::Frames;
-use crate::{Cell, CellRegion, CellRobot, Follow};
+use crate::reach::Reach;
+use crate::{Cell, CellRegion, CellRobot, Follow, RegionSolid};
 
 type Result<T> = std::result::Result<T, elbowroom_formats::Diagnostic>;
 
@@ -61,54 +61,6 @@ pub(super) fn check(
     Ok(())
 }
 
-/// A ball that contains every guarded or solid point of a robot, at any joint values.
-#[derive(Debug, Clone, Copy)]
-struct Reach {
-    base: Vec3,
-    radius_m: f64,
-}
-
-impl Reach {
-    /// Sum of offsets, strokes and solids along the chain, with or without tool and load.
-    fn of(robot: &CellRobot, with_tool: bool) -> Self {
-        let chain = &robot.robot.chain;
-        let without_payload = robot.without_payload();
-        let colliders = if with_tool { &robot.robot.colliders } else { &without_payload.colliders };
-        let along = |link: LinkId| {
-            let joint = |j: &elbowroom_kinematics::JointId| {
-                let joint = &chain.joints()[j.0];
-                let slides = joint.kind == JointKind::Prismatic;
-                let stroke = if slides { joint.limits.lower.abs().max(joint.limits.upper.abs()) } else { 0.0 };
-                joint.origin.translation.length() + stroke
-            };
-            chain.path(link).iter().map(joint).sum::<f64>()
-        };
-        let radius = |b: &Collider| {
-            let boxed = b.shape.aabb(&b.in_link);
-            boxed.min.abs().max(boxed.max.abs()).length()
-        };
-        let link = |(i, colliders): (usize, &Vec<Collider>)| {
-            along(LinkId(i)) + colliders.iter().map(radius).fold(0.0, f64::max)
-        };
-        let tcp = if with_tool { robot.tcp_in_flange.translation.length() } else { 0.0 };
-        let solids = colliders.iter().enumerate().map(link).fold(0.0, f64::max);
-        Self { base: robot.base_in_world.translation, radius_m: solids.max(along(robot.flange) + tcp) }
-    }
-
-    /// Distance (m) of a solid from the base.
-    fn distance_m(&self, shape: &Shape, in_world: &Pose) -> f64 {
-        separation(&POINT, &Pose::from_translation(self.base), shape, in_world).distance
-    }
-
-    fn meets(&self, shape: &Shape, in_world: &Pose, more_m: f64) -> bool {
-        let limit = self.radius_m + more_m;
-        // An unbounded reach contains everything.
-        !limit.is_finite() || within(&POINT, &Pose::from_translation(self.base), shape, in_world, limit)
-    }
-}
-
-const POINT: Shape = Shape::Sphere(Sphere { radius: 0.0 });
-
 /// An implausible solid.
 enum Implausibility {
     /// Out of reach: its distance from the nearest base, and the reach of that robot, m.
@@ -129,8 +81,7 @@ impl PlausibilityCheck<'_> {
     fn region(&self, t: &Table<'_>, r: &CellRegion, warnings: &mut Vec<Diagnostic>) {
         let region = &r.region;
         // The surroundings of a solid are as large as no cell.
-        let kept_in = kept_in(&region.shape);
-        let implausibility = size(kept_in.as_ref().unwrap_or(&region.shape)).or_else(|| {
+        let implausibility = size(kept_in(r).unwrap_or(&region.shape)).or_else(|| {
             let in_source = region.anchor * region.shape_in_anchor;
             let more_m = region.warning_m;
             match r.follow {
@@ -150,7 +101,7 @@ impl PlausibilityCheck<'_> {
 
     /// Refuses a robot that could get beyond the surroundings of the solid in which a region keeps it.
     fn surroundings(&self, t: &Table<'_>, r: &CellRegion) -> Result<()> {
-        if kept_in(&r.region.shape).is_none() {
+        if kept_in(r).is_none() {
             return Ok(());
         }
         let bounds = r.region.shape.aabb(&(r.region.anchor * r.region.shape_in_anchor));
@@ -257,10 +208,11 @@ impl PlausibilityCheck<'_> {
 }
 
 /// The solid in which a region with `keep = "inside"` keeps robots.
-fn kept_in(shape: &Shape) -> Option<Shape> {
-    let Shape::Mesh(mesh) = shape else { return None };
-    let (vertices, triangles) = cavity(mesh)?;
-    TriMesh::new(vertices, triangles).ok().map(|mesh| Shape::Mesh(mesh.into()))
+fn kept_in(r: &CellRegion) -> Option<&Shape> {
+    match &r.solid {
+        RegionSolid::AllBut(shape) => Some(shape),
+        RegionSolid::Shape | RegionSolid::Walls(_) => None,
+    }
 }
 
 /// The table at the line of a key, or at its own line if the key is missing.

@@ -12,7 +12,7 @@ use elbowroom_spatial::{Pose, Rotation, Vec3};
 use super::definitions::{Definitions, robot_id};
 use super::schema::{ENCODER, FENCE, REGION, REGION_SHAPES, names};
 use super::{fence, follow, models};
-use crate::{CellRegion, Encoder, Follow, Travel, Units};
+use crate::{CellRegion, Encoder, Follow, RegionSolid, Travel, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -61,15 +61,19 @@ impl RegionTable<'_> {
         known: &mut Definitions<'_>,
         warnings: &mut Vec<Diagnostic>,
     ) -> Result<CellRegion> {
-        let region = if self.is_fence { walls } else { solid }(self.name, &self.table, units)?;
-        let read = read(region, &self.table, units, known, warnings)?;
-        Ok(CellRegion { is_fence: self.is_fence, ..read })
+        let (region, solid) = if self.is_fence {
+            walls(self.name, &self.table, units)?
+        } else {
+            (solid(self.name, &self.table, units)?, RegionSolid::Shape)
+        };
+        read(region, solid, &self.table, units, known, warnings)
     }
 }
 
 /// Reads what a table says of its region beside the solid.
 fn read(
     mut region: Region,
+    mut solid: RegionSolid,
     t: &Table<'_>,
     units: Units,
     known: &mut Definitions<'_>,
@@ -90,7 +94,9 @@ fn read(
     check_warning(t, &region, warnings)?;
     let followed = t.get("follow").map(|v| follow::read(&v, units, known, warnings)).transpose()?;
     if let Some(v) = t.get("keep").filter(|_| is_inside(t)) {
-        kept_inside(&mut region, &v)?;
+        if let Some(kept_in) = kept_inside(&mut region, &v)? {
+            solid = RegionSolid::AllBut(kept_in);
+        }
         let moves = t.get("follow").filter(|_| matches!(region.shape, Shape::Mesh(_)));
         if let Some(follow) = moves {
             let what = "moves a region that keeps robots inside of it";
@@ -99,7 +105,7 @@ fn read(
     }
     let (follow, source_limits) = followed.map_or((None, SourceLimits::default()), |(f, l)| (Some(f), l));
     let robots = robots(t, known, follow)?;
-    Ok(CellRegion { region, line: t.line, robots, follow, source_limits, is_fence: false })
+    Ok(CellRegion { region, line: t.line, robots, follow, source_limits, solid })
 }
 
 /// A thickness or a hysteresis: beyond `plausible` metres it causes a warning, beyond [`MAX_M`] an error.
@@ -147,8 +153,9 @@ fn is_inside(t: &Table<'_>) -> bool {
     t.get("keep").is_some_and(|v| v.text().is_ok_and(|word| word == "inside"))
 }
 
-/// Turns a region around: what was inside is free, and everything else is the region.
-fn kept_inside(region: &mut Region, v: &Value<'_>) -> Result<()> {
+/// Turns a region around: what was inside is free, and everything else is the region. Returns the solid that is free;
+/// `None` for a plane, which is still one.
+fn kept_inside(region: &mut Region, v: &Value<'_>) -> Result<Option<Shape>> {
     if matches!(region.kind, RegionKind::Exchange { .. }) {
         return Err(v
             .error("does not suit an exchange region, into which robots go one by one")
@@ -157,16 +164,15 @@ fn kept_inside(region: &mut Region, v: &Value<'_>) -> Result<()> {
     if matches!(region.shape, Shape::HalfSpace(_)) {
         let turned_over = Pose::new(Rotation::from_rpy(std::f64::consts::PI, 0.0, 0.0), Vec3::ZERO);
         region.shape_in_anchor = region.shape_in_anchor * turned_over;
-        return Ok(());
+        return Ok(None);
     }
     let wall = surroundings(&region.shape, CHORD_ERROR_M, SURROUNDINGS_M).map_err(|e| {
         v.error(format!("\"inside\" of the region: {e}")).hint("a closed mesh, or shape = \"convex\" for its hull")
     })?;
-    region.shape = Shape::Mesh(wall.into());
-    Ok(())
+    Ok(Some(std::mem::replace(&mut region.shape, Shape::Mesh(wall.into()))))
 }
 
-fn walls(name: &str, t: &Table<'_>, units: Units) -> Result<Region> {
+fn walls(name: &str, t: &Table<'_>, units: Units) -> Result<(Region, RegionSolid)> {
     let common = REGION.iter().filter(|key| !NOT_OF_A_FENCE.contains(&key.name)).map(|key| key.name);
     t.only(&common.chain(names(&[FENCE])).collect::<Vec<_>>())?;
     fence::solid(name, t, units)

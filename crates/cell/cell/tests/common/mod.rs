@@ -1,6 +1,8 @@
 //! Cells for tests, with small robots.
 #![allow(dead_code)]
 
+pub mod zone_reader;
+
 use elbowroom_cell::Cell;
 
 /// A six-axis arm of the NS16's proportions, with capsules for links.

@@ -31,6 +31,11 @@ impl KeptDirection {
         }
     }
 
+    /// An axis of a link that stays within an angle (rad) of a direction in the world.
+    pub(crate) fn new(link: LinkId, axis_in_link: Vec3, in_world: Vec3, tolerance_rad: f64) -> Self {
+        Self { link, axis_in_link, in_world, tolerance_rad }
+    }
+
     /// The constraint on the paths of the robot in a scene.
     ///
     /// # Panics

@@ -22,6 +22,9 @@ pub(super) enum NotFree {
     /// The scene refuses the values.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// An axis has another direction than the path constraint says.
+    #[error("the path constraint is violated: {0}")]
+    Constraint(String),
     /// Two geometries overlap.
     #[error("`{a}` and `{b}` are in collision")]
     Collision { a: String, b: String },
@@ -52,6 +55,11 @@ fn check_free(problem: &ProblemScene, q: &[f64]) -> Result<(), NotFree> {
         let (lower, upper) = problem.limits()[i];
         let joint = chain.joints()[chain.active_joints()[i].0].name.clone();
         return Err(NotFree::Limits { joint, value: q[i], lower, upper });
+    }
+    if let Some(mut violated) =
+        problem.constraints().into_iter().find_map(|mut c| (c.distance_m(q, 0.0) <= 0.0).then_some(c))
+    {
+        return Err(NotFree::Constraint(violated.describe_nearest(q)));
     }
     let mut state: SceneState = problem.start.clone();
     state.set_q(&problem.scene, ROBOT, q)?;

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use elbowroom_formats::problem_set::PlanningProblem;
+use elbowroom_formats::problem_set::{AxisConstraint, PlanningProblem};
 use elbowroom_formats::suggest;
-use elbowroom_kinematics::LinkId;
-use elbowroom_planner::RrtConnect;
+use elbowroom_kinematics::{Chain, LinkId};
+use elbowroom_planner::{PathConstraint, RrtConnect};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Object, Scene, SceneError, SceneState};
 use elbowroom_spatial::Pose;
@@ -15,6 +15,7 @@ use super::frames::Frames;
 use super::joint_values::{self, JointValues};
 use super::matrix::skip_allowed;
 use super::messages::{Notes, ProblemKey, Result};
+use crate::plan::KeptDirection;
 
 /// The only robot.
 pub(super) const ROBOT: RobotId = RobotId(0);
@@ -38,6 +39,8 @@ pub struct ProblemScene {
     pub(super) goals: Vec<Vec<f64>>,
     limits: Vec<(f64, f64)>,
     pub(super) planned: Vec<bool>,
+    /// Directions that axes of links keep, in the root link.
+    kept: Vec<KeptDirection>,
 }
 
 impl ProblemScene {
@@ -63,7 +66,15 @@ impl ProblemScene {
 
     /// A planner that holds the joints that the goals do not name.
     pub(super) fn planner(&self) -> std::result::Result<RrtConnect<'_>, SceneError> {
-        Ok(RrtConnect::new(&self.scene, ROBOT)?.with_limits(self.limits.iter().copied()))
+        let planner = RrtConnect::new(&self.scene, ROBOT)?.with_limits(self.limits.iter().copied());
+        Ok(if self.kept.is_empty() { planner } else { planner.with_constraint(self.constraints()) })
+    }
+
+    /// The constraints on its paths.
+    pub(super) fn constraints(&self) -> Vec<Box<dyn PathConstraint>> {
+        let constraint =
+            |kept: &KeptDirection| Box::new(kept.constraint(&self.scene, ROBOT)) as Box<dyn PathConstraint>;
+        self.kept.iter().map(constraint).collect()
     }
 }
 
@@ -81,8 +92,20 @@ pub(super) fn build(base: &BaseScene, problem: &PlanningProblem, notes: &mut Not
     let mut start = SceneState::new(&scene);
     start.set_q(&scene, ROBOT, &values.start).map_err(refused)?;
     attach(problem, key, &scene, &ids, &mut start)?;
+    let kept = problem.kept.iter().map(|kept| direction(kept, key, chain, &frames)).collect::<Result<_>>()?;
     let JointValues { goals, planned, limits, .. } = values;
-    Ok(ProblemScene { scene, start, goals, limits, planned })
+    Ok(ProblemScene { scene, start, goals, limits, planned, kept })
+}
+
+fn direction(kept: &AxisConstraint, key: ProblemKey<'_>, chain: &Chain, frames: &Frames<'_>) -> Result<KeptDirection> {
+    let in_root = frames.in_root(&kept.frame)?.rotation * kept.direction;
+    Ok(KeptDirection::new(link(chain, &kept.link, key)?, kept.axis_in_link, in_root, kept.tolerance_rad))
+}
+
+fn link(chain: &Chain, name: &str, key: ProblemKey<'_>) -> Result<LinkId> {
+    let names = chain.links().iter().map(String::as_str);
+    let unknown = || key.error(format!("there is no link `{name}`")).hint(suggest::hint(name, names));
+    chain.link(name).ok_or_else(unknown)
 }
 
 /// One object of the scene per solid.
@@ -115,14 +138,9 @@ fn attach(
     state: &mut SceneState,
 ) -> Result<()> {
     let chain = &scene.robots()[0].robot.chain;
-    let link = |name: &str| -> Result<LinkId> {
-        let names = chain.links().iter().map(String::as_str);
-        let unknown = || key.error(format!("there is no link `{name}`")).hint(suggest::hint(name, names));
-        chain.link(name).ok_or_else(unknown)
-    };
     for attached in &problem.attached {
-        let carrier = link(&attached.link)?;
-        let touch = attached.touch_links.iter().map(|name| link(name)).collect::<Result<Vec<_>>>()?;
+        let carrier = link(chain, &attached.link, key)?;
+        let touch = attached.touch_links.iter().map(|name| link(chain, name, key)).collect::<Result<Vec<_>>>()?;
         let mut chain_state = elbowroom_kinematics::ChainState::new(chain);
         chain_state.q.copy_from_slice(state.q(ROBOT));
         chain.forward(&mut chain_state);

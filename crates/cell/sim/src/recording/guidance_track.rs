@@ -63,6 +63,8 @@ pub enum GuidanceState {
     Gliding,
     /// The arm cannot follow: its reach, a joint, or contact with something else.
     Refused,
+    /// Its shaft is not at the point of entry yet, or cannot turn about it as the hand demands: the tip waits.
+    AtEntry,
     /// It stands: the operator is not enabled, the input is old, or the override is 0.
     Held,
 }
@@ -75,6 +77,7 @@ impl GuidanceState {
             Self::Touching => "contact",
             Self::Gliding => "glide",
             Self::Refused => "refuse",
+            Self::AtEntry => "entry",
             Self::Held => "hold",
         }
     }

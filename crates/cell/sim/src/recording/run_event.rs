@@ -46,8 +46,8 @@ pub enum RunEvent {
     Tool,
     /// The avoidance of a robot changed to this state. An evaded obstacle is named in place of the region.
     Avoidance(AvoiderState),
-    /// The tool of a guided robot changed to this state. With the name of a fixture, it was not switched: the tool is too
-    /// near.
+    /// The tool of a guided robot changed to this state. In place of the region, the joint or the part that keeps the arm
+    /// from following is named; or a fixture that was not switched, because the tool is too near.
     Guided(GuidanceState),
     /// A robot took over the work-piece of its virtual robot, which is named in place of the region.
     HandOver,

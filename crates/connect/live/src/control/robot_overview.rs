@@ -9,12 +9,18 @@ use serde::Serialize;
 
 use crate::messages::JointState;
 
+/// Largest speed of a joint at rest, rad/s or m/s.
+const AT_REST: f64 = 1e-4;
+
 /// A robot, and where it is if its controller is heard.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct RobotOverview {
     pub(crate) name: String,
     /// Whether its controller is heard.
     pub(crate) heard: bool,
+    /// Whether a joint moves, if the controller tells its velocities.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) moves: Option<bool>,
     /// Frame of the flange in the world.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) flange: Option<PoseStatus>,
@@ -36,7 +42,8 @@ impl RobotOverview {
             [flange, flange * robot.tcp_in_flange]
         });
         let pose = |i: usize| placed.as_ref().map(|poses| PoseStatus::from(&poses[i]));
-        Self { name: robot.name.clone(), heard: state.is_some(), flange: pose(0), tcp: pose(1) }
+        let moves = state.filter(|s| !s.qd.is_empty()).map(|s| s.qd.iter().any(|v| !(v.abs() <= AT_REST)));
+        Self { name: robot.name.clone(), heard: state.is_some(), moves, flange: pose(0), tcp: pose(1) }
     }
 }
 

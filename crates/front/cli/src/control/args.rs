@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use crate::args::TaughtShapeArgs;
 use crate::region::args::Class;
+use crate::taught_shape::TaughtShapeArgs;
 
 /// Commands for a running cell (docs/control.md).
 #[derive(Debug, Subcommand)]
@@ -141,8 +141,8 @@ pub(crate) struct AddArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The points are those of `elbowroom teach`: move the robot to each, and press Enter. Then the distance of the
-robot from the region is shown while it moves: a robot that touches the obstacle should be 0 from the region.
+    after_help = "The points are those of `elbowroom teach`: move the robot to each, and press Enter. Then move it to the obstacle and see
+its distance from the region, which should be 0 where the tool touches the obstacle.
 
 Examples:
   elbowroom control teach trolley --robot left --shape box --secret panel.secret >> cell.toml

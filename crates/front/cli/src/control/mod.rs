@@ -43,11 +43,12 @@ pub(crate) fn control(command: &ControlCommand) -> Result<ExitStatus, Failure> {
         ControlCommand::Teach(args) => {
             let client = Client::new(&args.service)?;
             let toml = teach::Teacher::new(args, &client)?.teach()?;
+            // Printed first: what was taught is not lost if the service refuses it.
+            print(&format!("\n{toml}"))?;
             if args.add {
                 let request = json!({ "region": args.region, "toml": toml, "active": !args.off, "note": args.note });
                 done(&client.change("/add", &request)?)?;
             }
-            print(&format!("\n{toml}"))?;
         }
         ControlCommand::Remove(args) => {
             let request = json!({ "region": args.region, "note": args.note });

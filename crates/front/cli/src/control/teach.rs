@@ -19,6 +19,12 @@ use crate::taught_region::{TaughtRegion, points_of};
 /// Time between two questions where the robot is.
 const PERIOD: Duration = Duration::from_millis(200);
 
+/// Where a robot is, m, and whether it moves.
+struct Place {
+    at: Vec3,
+    moves: bool,
+}
+
 /// A person at a robot, and the service that knows where the robot is.
 pub(super) struct Teacher<'a> {
     args: &'a TeachAtRobotArgs,
@@ -32,7 +38,13 @@ pub(super) struct Teacher<'a> {
 impl<'a> Teacher<'a> {
     /// Listens to standard input.
     pub(super) fn new(args: &'a TeachAtRobotArgs, client: &'a Client) -> Result<Self, Failure> {
-        let units = units(&client.regions()?)?;
+        let now = client.regions()?;
+        let units = units(&now)?;
+        let names = now["regions"].as_array().into_iter().flatten().filter_map(|r| r["name"].as_str());
+        if names.into_iter().any(|name| name == args.region) {
+            let what = format!("there is a region `{}` already", args.region);
+            return Err(Failure::Wrong(format!("{what}\n  write: another name")));
+        }
         let (send, typed) = channel();
         std::thread::spawn(move || {
             let lines = std::io::stdin().lock().lines().map_while(Result::ok);
@@ -50,8 +62,7 @@ impl<'a> Teacher<'a> {
         let shape = &self.args.shape;
         let (name, is_temporary) = (self.args.region.as_str(), !self.args.permanent);
         let taught = TaughtRegion { name, shape, units: self.units, is_temporary };
-        taught.check_height()?;
-        // Refused before anybody moves a robot.
+        taught.check_arguments()?;
         self.place()?;
         loop {
             let points = self.points()?;
@@ -80,9 +91,12 @@ impl<'a> Teacher<'a> {
         for (i, point) in wanted.iter().enumerate() {
             let number = format!("{} of {}", i + 1, wanted.len());
             note(format_args!("{number}: move the {what} of {robot} to {point}, then press Enter (q ends)"));
-            self.wait(|| self.place().map(|p| format!("{what} at {}", self.shown(p))))?;
-            let at = self.place()?;
+            self.wait(&[""], || self.place().map(|p| format!("{what} at {}", self.shown(p.at))))?;
+            let Place { at, moves } = self.place()?;
             note(format_args!("{number}: {point} at {}", self.shown(at)));
+            if moves {
+                note(format_args!("{robot} is moving: the point is where it was a moment ago"));
+            }
             points.push(at);
         }
         Ok(points)
@@ -96,31 +110,39 @@ impl<'a> Teacher<'a> {
         let distance = || {
             let answer = self.client.distance(&request)?;
             Ok(match answer["distance_m"].as_f64() {
-                Some(metres) => format!("{robot} is {} from the region", self.length(metres)),
+                Some(metres) => format!("{robot} is {} from the region", self.units.show_length(metres)),
                 None => format!("{robot} is not heard"),
             })
         };
         note("compare it with the obstacle: move the robot there and see its distance from the region");
         note("Enter takes the region, r teaches it again, q ends");
+        if self.args.add && !self.args.off {
+            note(format_args!("before Enter, move {robot} out of the region and its reach of braking: it will be on"));
+        }
         note(distance()?);
-        let typed = self.wait(distance)?;
+        let typed = self.wait(&["", "r"], distance)?;
         note(distance()?);
         Ok(typed != "r")
     }
 
-    /// Waits for a line; meanwhile a terminal shows what is so now.
-    fn wait(&self, now: impl Fn() -> Result<String, Failure>) -> Result<String, Failure> {
+    /// Waits for one of the known answers; meanwhile a terminal shows what is so now.
+    fn wait(&self, known: &[&str], now: impl Fn() -> Result<String, Failure>) -> Result<String, Failure> {
         loop {
             match self.typed.recv_timeout(PERIOD) {
                 Ok(line) => match line.trim() {
                     "q" => return Err(Failure::Wrong("nothing was taught: ended by q".into())),
-                    other => return Ok(other.to_owned()),
+                    other if known.contains(&other) => return Ok(other.to_owned()),
+                    other => {
+                        let more = if known.contains(&"r") { ", r" } else { "" };
+                        note(format_args!("`{other}` is not an answer here: Enter{more} or q"));
+                    }
                 },
                 Err(RecvTimeoutError::Disconnected) => {
                     return Err(Failure::Wrong("nothing was taught: the standard input has ended".into()));
                 }
                 Err(RecvTimeoutError::Timeout) if self.is_terminal => {
-                    let text = now()?;
+                    // A moment without an answer ends nothing: the points stay.
+                    let text = now().unwrap_or_else(|_| "no answer".into());
                     // A failed write is ignored, as for all messages.
                     let _ = write!(std::io::stderr().lock(), "\r\x1b[K{text}\r");
                 }
@@ -130,7 +152,7 @@ impl<'a> Teacher<'a> {
     }
 
     /// Where the TCP or the flange of the robot is, in the world.
-    fn place(&self) -> Result<Vec3, Failure> {
+    fn place(&self) -> Result<Place, Failure> {
         let document = self.client.regions()?;
         let robots = document["robots"].as_array().map_or(&[][..], Vec::as_slice);
         let name = &self.args.robot;
@@ -144,7 +166,7 @@ impl<'a> Teacher<'a> {
             let help = "connect its controller, or `elbowroom live CELL --simulate` for a try";
             return Err(Failure::Wrong(format!("{name}: its controller is not heard\n  write: {help}")));
         };
-        Ok(Vec3::new(x, y, z))
+        Ok(Place { at: Vec3::new(x, y, z), moves: robot["moves"] == true })
     }
 
     fn shown(&self, p: Vec3) -> String {
@@ -152,21 +174,13 @@ impl<'a> Teacher<'a> {
         let [x, y, z] = p.to_array().map(|v| ((v / per_unit) * 1e4).round() / 1e4);
         format!("[{x}, {y}, {z}] {}", self.units.length.symbol())
     }
-
-    fn length(&self, metres: f64) -> String {
-        let value = metres / self.units.length.to_metres(1.0);
-        format!("{} {}", (value * 1e4).round() / 1e4, self.units.length.symbol())
-    }
 }
 
 /// The units of the cell file, as the service names them.
 fn units(document: &Value) -> Result<Units, Failure> {
-    let lengths = [LengthUnit::Metre, LengthUnit::Millimetre];
-    let angles = [AngleUnit::Radian, AngleUnit::Degree];
     let named = document["units"]["length"].as_str().zip(document["units"]["angle"].as_str());
     let found = named.and_then(|(length, angle)| {
-        let length = lengths.into_iter().find(|u| u.symbol() == length)?;
-        Some(Units { length, angle: angles.into_iter().find(|u| u.symbol() == angle)? })
+        Some(Units { length: LengthUnit::parse(length)?, angle: AngleUnit::parse(angle)? })
     });
     found.ok_or_else(|| Failure::Wrong("the service does not name its units: it is of another version".into()))
 }

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use elbowroom::cell::ZoneLanguage;
 use elbowroom::monitor::AccessClass;
 
-/// Commands for sealed cells (docs/roles.md).
+/// Commands for sealed cells (docs/roles.md), and for the regions of any cell (docs/controllers.md).
 #[derive(Debug, Subcommand)]
 pub(crate) enum RegionCommand {
     /// Add regions: tables [region.NAME] from a file, or from standard input
@@ -22,6 +23,8 @@ pub(crate) enum RegionCommand {
     Log(LogArgs),
     /// Generate a key pair: the private key goes to a file, the public key to standard output
     Keygen(KeygenArgs),
+    /// Write the regions of a robot as zones of its controller
+    Export(ExportArgs),
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -159,6 +162,52 @@ pub(crate) struct KeygenArgs {
     /// The new file for the private key
     #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Language {
+    /// ABB RAPID: World Zones, as a module
+    Rapid,
+    /// KUKA KRL: Cartesian workspaces, as lines of $custom.dat and $machine.dat
+    Krl,
+}
+
+impl From<Language> for ZoneLanguage {
+    fn from(language: Language) -> Self {
+        match language {
+            Language::Rapid => Self::Rapid,
+            Language::Krl => Self::Krl,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  elbowroom region export cell.toml --robot r1 --to rapid --out zones.mod
+  elbowroom region export cell.toml --robot r2 --to krl --frame world
+  elbowroom region export cell.toml --to rapid --json | jq '.regions[].missing'
+
+Exit status: 0 if the text expresses all regions of the robot; 1 if something is missing, which is
+named on standard error and in a comment.")]
+pub(crate) struct ExportArgs {
+    /// The cell file
+    pub(crate) cell: PathBuf,
+    /// The robot; default: the only one
+    #[arg(long, value_name = "NAME")]
+    pub(crate) robot: Option<String>,
+    /// The language of the controller
+    #[arg(long, value_enum)]
+    pub(crate) to: Language,
+    /// The frame that is the controller's world: a link that no joint moves, or world, that of the cell; default: the
+    /// root link
+    #[arg(long, value_name = "LINK")]
+    pub(crate) frame: Option<String>,
+    /// Write the text to this file instead of standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print one JSON document, which contains the text
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 fn key_value(text: &str) -> Result<(String, String), String> {

@@ -1,6 +1,7 @@
-//! `elbowroom region`: signed edits of a sealed cell, and its edit log.
+//! `elbowroom region`: signed edits of a sealed cell, its edit log, and its regions in the language of a controller.
 
 pub(crate) mod args;
+mod export;
 mod log;
 
 use std::io::Read;
@@ -28,6 +29,7 @@ pub(crate) fn region(command: &RegionCommand) -> Result<ExitStatus, Failure> {
         RegionCommand::Seal(args) => signed(&args.cell, &args.sign, |signer| seal::seal(&args.cell, signer)),
         RegionCommand::Log(args) => log::log(args),
         RegionCommand::Keygen(args) => keygen(args),
+        RegionCommand::Export(args) => export::export(args),
     }
 }
 

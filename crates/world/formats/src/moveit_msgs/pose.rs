@@ -23,8 +23,16 @@ pub(crate) fn transform(field: &Field<'_>) -> Result<Pose, Diagnostic> {
 
 fn parts(field: &Field<'_>, [translation, rotation]: [&str; 2]) -> Result<Pose, Diagnostic> {
     let translation = field.get(translation)?.map_or(Ok(Vec3::ZERO), |f| point(&f))?;
-    let rotation = field.get(rotation)?.map_or(Ok(Rotation::IDENTITY), |f| quaternion(&f))?;
-    Ok(Pose::new(rotation, translation))
+    Ok(Pose::new(rotation_of(field, rotation)?, translation))
+}
+
+/// The `orientation` (x, y, z, w) of a message; none if it is missing.
+pub(crate) fn orientation(field: &Field<'_>) -> Result<Rotation, Diagnostic> {
+    rotation_of(field, "orientation")
+}
+
+fn rotation_of(field: &Field<'_>, key: &str) -> Result<Rotation, Diagnostic> {
+    field.get(key)?.map_or(Ok(Rotation::IDENTITY), |f| quaternion(&f))
 }
 
 /// Reads three coordinates, metres.

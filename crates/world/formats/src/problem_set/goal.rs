@@ -13,14 +13,6 @@ const JOINTS: &str = "\"joint_constraints\": [{\"joint_name\": \"NAME\", \"posit
 
 /// Reads the alternative goals of a request, each as joint values.
 pub(super) fn goals(request: &Field<'_>) -> Result<Vec<Vec<JointValue>>, Diagnostic> {
-    if let Some(constraints) = request.get("path_constraints")? {
-        for key in OTHER_CONSTRAINTS.into_iter().chain(["joint_constraints"]) {
-            if !constraints.list(key)?.is_empty() {
-                let hint = "no constraint, or an empty list: a path could violate it";
-                return Err(constraints.error(format!("has `{key}`, which are not supported"), hint));
-            }
-        }
-    }
     let goals = request.list("goal_constraints")?;
     if goals.is_empty() {
         let hint = format!("\"goal_constraints\": [{{{JOINTS}}}]");

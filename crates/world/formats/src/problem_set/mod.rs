@@ -9,12 +9,14 @@
 //! | `scene.allowed_collision_matrix` | pairs that may touch |
 //! | `scene.robot_state`, `request.start_state` | joint values, pose of the base, attached objects; the latter overrides |
 //! | `request.goal_constraints` | joint values; several are alternatives |
+//! | `request.path_constraints` | orientation constraints that leave turns about one axis free |
 //!
 //! Other content is ignored. Content that would make an answer wrong is refused: an octomap with data, goals that are
-//! poses, and path constraints.
+//! poses, and other path constraints.
 
 mod document;
 mod goal;
+mod path_constraint;
 mod problem;
 #[cfg(test)]
 mod tests;
@@ -30,6 +32,7 @@ use crate::{Diagnostic, input};
 use document::{Entries, LAYOUT};
 
 pub use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
+pub use path_constraint::AxisConstraint;
 pub use problem::PlanningProblem;
 
 /// Largest size of a file, bytes. A parsed document takes several times the memory of its text.
@@ -112,5 +115,6 @@ fn problem([set, id]: [&str; 2], root: &Field<'_>, reading: &mut Reading) -> Res
         base_in_world: state.base_in_world.unwrap_or(Pose::IDENTITY),
         start: state.joints,
         goals: goal::goals(&request)?,
+        kept: path_constraint::axis_constraints(&request)?,
     })
 }

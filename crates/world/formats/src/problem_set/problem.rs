@@ -2,6 +2,7 @@
 
 use elbowroom_spatial::Pose;
 
+use super::path_constraint::AxisConstraint;
 use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
 
 /// A planning problem: obstacles, a start and alternative goals.
@@ -25,4 +26,6 @@ pub struct PlanningProblem {
     pub start: Vec<JointValue>,
     /// Alternative goals: at least one, all non-empty.
     pub goals: Vec<Vec<JointValue>>,
+    /// Axes of links that keep their directions along the path.
+    pub kept: Vec<AxisConstraint>,
 }

@@ -54,6 +54,24 @@ fn complete() -> Value {
     })
 }
 
+/// An orientation constraint of the hand, turned by a quarter about z of the rack.
+fn upright(x: f64, y: f64, z: f64) -> Value {
+    json!({"header": {"frame_id": "rack"}, "link_name": "hand", "orientation": [0, 0, 1, 1],
+        "absolute_x_axis_tolerance": x, "absolute_y_axis_tolerance": y, "absolute_z_axis_tolerance": z})
+}
+
+#[test]
+fn orientation_constraints_that_leave_one_axis_free_keep_that_axis() {
+    let mut constrained = complete();
+    let all = [upright(4.0, 0.3, 0.2), upright(4.0, 4.0, 4.0), upright(0.3, 0.4, 3.2)];
+    constrained["request"]["path_constraints"] = json!({"orientation_constraints": all});
+    let kept = parse_problem(&constrained).unwrap().problems.remove(0).kept;
+    let facts: Vec<_> =
+        kept.iter().map(|k| (k.link.as_str(), k.frame.as_str(), k.axis_in_link, k.tolerance_rad)).collect();
+    assert_eq!(facts, [("hand", "rack", Vec3::X, 0.2), ("hand", "rack", Vec3::Z, 0.3)]);
+    assert!(kept[0].direction.distance(Vec3::Y) < 1e-12 && kept[1].direction.distance(Vec3::Z) < 1e-12);
+}
+
 fn parse_problem(problem: &Value) -> Result<ProblemFile, Diagnostic> {
     parse(Path::new("set.json"), json!({"shelf": {"7": problem}}).to_string().as_bytes())
 }
@@ -181,9 +199,18 @@ fn errors_name_file_set_problem_field_and_a_remedy() {
         assert!(message.starts_with(start) && message.contains(what), "{pointer}: {message}");
         assert!(message.split("write: ").nth(1).is_some_and(|h| h.contains(hint)), "{pointer}: {message}");
     }
-    let mut constrained = complete();
-    constrained["request"]["path_constraints"] = json!({"orientation_constraints": [{}]});
-    assert!(parse_problem(&constrained).unwrap_err().message.contains("not supported"));
+    for (key, constraint, words) in [
+        ("position_constraints", json!({}), "`position_constraints`, which are not supported"),
+        ("orientation_constraints", json!({}), "has no `absolute_x_axis_tolerance`"),
+        ("orientation_constraints", upright(0.1, 0.1, 0.1), "leaves 0 axes free"),
+        ("orientation_constraints", upright(0.1, 4.0, 4.0), "leaves 2 axes free"),
+        ("orientation_constraints", upright(0.0, 0.1, 4.0), "is not above 0"),
+    ] {
+        let mut constrained = complete();
+        constrained["request"]["path_constraints"] = json!({key: [constraint]});
+        let message = parse_problem(&constrained).unwrap_err().message;
+        assert!(message.contains(words), "{message}");
+    }
 }
 
 #[test]

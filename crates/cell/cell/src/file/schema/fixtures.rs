@@ -19,15 +19,16 @@ pub(in crate::file) const FIXTURE: &[Key] = &[
 
 #[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const GUIDE: &[Key] = &[
-    key("guide", "`\"line\"` `\"tube\"` `\"plane\"` `\"cone\"`", "required", "where the hand is kept, instead of a shield"),
+    key("guide", "`\"line\"` `\"tube\"` `\"plane\"` `\"cone\"` `\"entry\"`", "required", "where the hand is kept, instead of a shield; `entry`: the fixed point through which the shaft of the tool passes"),
     key("tool", "`\"ROBOT/TOOL\"`", "required", "the guided tool; `\"ROBOT\"` or `\"ROBOT/tool\"` for the only one"),
     key("points", "list of points", "required by `line` and `tube`", "the line, which may bend, or the axis of the tube; in the world"),
-    key("radius", "length", "required by `tube`", "radius of the tube"),
+    key("radius", "length", "required by `tube`; 0 for `entry`", "radius of the tube; of `entry`: how far from the point the shaft may pass"),
     key("tolerance", "length", "0.5 mm", "of `line` and `tube`: distance from the line in bends, at sharp corners up to twice as much; a small one makes the tool slow there"),
-    key("at", "point", "required by `plane` and `cone`", "a point of the plane, or the apex of the cone; in the world"),
+    key("at", "point", "required by `plane`, `cone` and `entry`", "a point of the plane, the apex of the cone, or the point of entry; in the world"),
     key("normal", "vector", "required by `plane`", "normal of the plane"),
-    key("axis", "vector", "required by `cone`", "from the apex into the cone"),
+    key("axis", "vector", "required by `cone`; [0, 0, 1] for `entry`", "from the apex into the cone, in the world; of `entry`: direction of the shaft towards the tip, in the frame of the tool point"),
     key("half_angle", "angle", "required by `cone`", "angle between the axis and the side of the cone, below 90°"),
+    key("depth", "two lengths", "no limit", "of `entry`: least and most length of the shaft beyond the point; negative before it. A tip that is once within stays within"),
     key("active", "true, false", "true", "whether it is on at the start"),
 ];
 

@@ -12,5 +12,5 @@ pub(in crate::file) const GRID: &[Key] = &[
     key("quaternion", "`[x, y, z, w]`", "none", "instead of `rpy`"),
     key("joints", "names", "none: the place of the TCP counts", "the joints whose values are divided, instead of a box"),
     key("robots", "names", "all", "robots that have the grid"),
-    key("hysteresis", "length; with `joints` an angle", "1 mm, 0.1°", "how far beyond its border a cell is left; at most half of a cell"),
+    key("hysteresis", "length or angle, as the axes", "1 mm, 0.1°", "how far beyond its border a cell is left; at most half of a cell"),
 ];

@@ -1,0 +1,53 @@
+//! What the texts of all languages say in comments.
+
+use elbowroom_robot::RobotId;
+
+use super::region_zones::RegionZones;
+use super::zone::Zone;
+use super::zone_frame::ZoneFrame;
+use crate::Cell;
+
+/// Printable ASCII, one line: names of a cell may have any character, and comments of a controller may not.
+pub(super) fn ascii(text: &str) -> String {
+    text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '?' }).collect()
+}
+
+/// The first comments: whose zones these are, in which frame, and what no zone does.
+pub(super) fn head(cell: &Cell, robot: RobotId, frame: &ZoneFrame) -> Vec<String> {
+    let robot = &cell.robots[robot.0];
+    let frame = if frame.name == "world" {
+        "the world of the cell file".to_owned()
+    } else {
+        format!("the frame of the link \"{}\"", frame.name)
+    };
+    [
+        format!("Zones of robot \"{}\", from the regions of the cell \"{}\".", robot.name, cell.name),
+        format!("Written by elbowroom {}.", env!("CARGO_PKG_VERSION")),
+        format!("Millimetres and degrees in {frame}: it has to be the world frame of the controller."),
+        "A zone watches the active tool centre point: it guards neither the arm nor the tool.".to_owned(),
+        "It acts at its border; the slow-down before it, and the stopping distance, are the monitor's alone."
+            .to_owned(),
+        "Move the robot slowly to the border of each zone before you rely on it. Not a certified safety function."
+            .to_owned(),
+    ]
+    .iter()
+    .map(|line| ascii(line))
+    .collect()
+}
+
+/// The last comments: everything that the text does not express.
+pub(super) fn missing(regions: &[RegionZones<'_>]) -> Vec<String> {
+    let missing: Vec<_> = regions.iter().flat_map(|r| &r.missing).map(|m| ascii(&format!("- {}", m.message))).collect();
+    if missing.is_empty() {
+        return vec!["All regions of the robot are expressed.".to_owned()];
+    }
+    [vec!["NOT EXPRESSED:".to_owned()], missing].concat()
+}
+
+/// A comment that names the region, the part, and what the zone does.
+pub(super) fn title(zones: &RegionZones<'_>, zone: &Zone) -> String {
+    let part = if zone.part.is_empty() { String::new() } else { format!(", {}", zone.part) };
+    let life = if zones.is_temporary() { ", temporary" } else { "" };
+    let kind = zones.region.region.kind.name();
+    ascii(&format!("region \"{}\"{part}: {kind}{life}", zones.name()))
+}
