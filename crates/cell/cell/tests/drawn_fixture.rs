@@ -69,7 +69,7 @@ impl Folder {
 
 /// A line of three points on the block that no short decimal describes.
 fn line() -> DrawnTarget {
-    DrawnTarget::Line(vec![[1.0 / 30.0, -0.02, 0.1], [0.0123456789012, 0.0, 0.1], [-0.03, 2.0 / 70.0, 0.1]])
+    DrawnTarget::Line(vec![[1.0 / 30.0, -0.02, 0.1], [0.012_345_678_901_2, 0.0, 0.1], [-0.03, 2.0 / 70.0, 0.1]])
 }
 
 fn cut(name: &str) -> DrawnFixture {
