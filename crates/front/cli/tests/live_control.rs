@@ -286,8 +286,8 @@ warning = 100
         let (status, toml) = lesson.end();
         assert_eq!(status, 0);
         let keys = toml.split_once("[region.lamp]\n").unwrap().1;
-        let table: String =
-            keys.lines().take_while(|line| line.contains(" = ")).map(|line| format!("{line}\n")).collect();
+        let lines: Vec<&str> = keys.lines().take_while(|line| line.contains(" = ")).collect();
+        let table = lines.join("\n") + "\n";
         assert!(toml.contains("add region.lamp") && table.contains("shape = \"sphere\"\n"), "{toml}");
         let radius: f64 = table.split_once("radius = ").unwrap().1.lines().next().unwrap().parse().unwrap();
         assert!((radius - (surface - centre)).abs() < 1e-3 && table.contains("life = \"temporary\"\n"), "{table}");
