@@ -392,9 +392,11 @@ fn a_rapid_module_has_routines_for_power_on_and_for_temporary_zones() {
     PROC ElbowroomTemporaryZones()
         VAR shapedata shape;
         WZBoxDef \Inside, shape, [-200.004,599.996,-0.004], [200.004,1200.004,800.004];
+        WZFree wz3_cart;
         WZDOSet \Temp, wz3_cart \Inside, shape, doElbowroom4, 1;
         WZDisable wz3_cart;
         WZBoxDef \Inside, shape, [-250.004,549.996,-50.004], [250.004,1250.004,850.004];
+        WZFree wz4_cart;
         WZDOSet \Temp, wz4_cart \Inside, shape, doElbowroom5, 1;
         WZDisable wz4_cart;
     ENDPROC

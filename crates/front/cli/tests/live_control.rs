@@ -285,7 +285,9 @@ warning = 100
         assert!(near == 0.0 && far > 5.0, "{near} {far}");
         let (status, toml) = lesson.end();
         assert_eq!(status, 0);
-        let table = toml.split_once("[region.lamp]\n").unwrap().1;
+        let keys = toml.split_once("[region.lamp]\n").unwrap().1;
+        let lines: Vec<&str> = keys.lines().take_while(|line| line.contains(" = ")).collect();
+        let table = lines.join("\n") + "\n";
         assert!(toml.contains("add region.lamp") && table.contains("shape = \"sphere\"\n"), "{toml}");
         let radius: f64 = table.split_once("radius = ").unwrap().1.lines().next().unwrap().parse().unwrap();
         assert!((radius - (surface - centre)).abs() < 1e-3 && table.contains("life = \"temporary\"\n"), "{table}");
@@ -321,14 +323,26 @@ warning = 100
         };
         for (arguments, message) in [
             (&["--robot", "rial", "--shape", "box"][..], "there is no robot `rial`"),
-            (&["--robot", "rail", "--shape", "box3"][..], "Box3 needs --height"),
-            (&["--robot", "rail", "--shape", "box", "--height", "3"][..], "Box needs no --height"),
+            (&["--robot", "rail", "--shape", "box3"][..], "--shape box3 needs --height"),
+            (&["--robot", "rail", "--shape", "box3", "--height", "nan"][..], "--shape box3 needs --height"),
+            (&["--robot", "rail", "--shape", "box", "--warning=-5"][..], "warning"),
+            (&["--robot", "rail", "--shape", "box", "--height", "3"][..], "--shape box needs no --height"),
             (&["--robot", "rail", "--shape", "box"][..], "the standard input has ended"),
             (&["--robot", "rail", "--shape", "box", "--off"][..], "--add"),
         ] {
             let refused = teach(arguments);
             assert!(refused.status == 2 && refused.stderr.contains(message), "{arguments:?}: {}", refused.stderr);
         }
+        let known = control(
+            folder,
+            &["teach", "cart", "--at", &at, "--secret", "operator.secret", "--robot", "rail", "--shape", "box"],
+        );
+        assert!(known.status == 2 && known.stderr.contains("there is a region `cart` already"), "{}", known.stderr);
         assert!(!heard().contains("lamp"));
+        // What was taught is printed although the service does not add it; and words that mean nothing accept nothing.
+        let mut lesson = Lesson::start(folder, &at, &["--shape", "sphere4", "--add"]);
+        lesson.hear("1 of 4");
+        lesson.type_line("no");
+        lesson.hear("`no` is not an answer here: Enter or q");
     }
 }

@@ -92,11 +92,11 @@ impl GridAxis {
     fn place(&self, Coordinate { at, turn }: Coordinate, former: Option<u32>, hysteresis: f64) -> Option<u32> {
         let border = |place: u32| self.from + f64::from(place) * self.step();
         let holds = |place: u32, at: f64| at >= border(place) - hysteresis && at <= border(place + 1) + hysteresis;
+        let at = if turn > 0.0 { self.from + (at - self.from).rem_euclid(turn) } else { at };
         let stays = |place: &u32| [at, at - turn, at + turn].iter().any(|at| holds(*place, *at));
         if let Some(place) = former.filter(stays) {
             return Some(place);
         }
-        let at = if turn > 0.0 { self.from + (at - self.from).rem_euclid(turn) } else { at };
         let is_within = at >= self.from && at <= self.to;
         is_within.then(|| (((at - self.from) / self.step()) as u32).min(self.count.saturating_sub(1)))
     }

@@ -17,6 +17,9 @@ use crate::Cell;
 
 /// How far a solid may be turned against the axes, m at its corners: a right angle with four digits is, in most cells.
 const TURN_M: f64 = 5e-5;
+/// Shortest side of a box and height of a cylinder, and smallest radius, mm.
+const LEAST_SIDE_MM: f64 = 10.0;
+const LEAST_RADIUS_MM: f64 = 5.0;
 /// Longest identifier.
 const LONGEST_NAME: usize = 32;
 
@@ -64,6 +67,10 @@ impl Module {
         for (instruction, arguments) in actions.into_iter().flatten() {
             self.zones += 1;
             let name = variable(self.zones, zones.name());
+            if is_temporary {
+                // A zone is not defined again before it is erased, and `main` runs in cycles.
+                line(format!("WZFree {name};"));
+            }
             let _ = writeln!(self.variables, "    VAR {data} {name};");
             line(format!("{instruction} \\{switch}, {name}{arguments};"));
             if is_temporary {
@@ -127,10 +134,12 @@ fn definition(zone: &Zone) -> Result<String, String> {
             let (low, high) = (in_frame.translation - half_extents, in_frame.translation + half_extents);
             let along = |i: usize| interval_mm(zone.side, low[i], high[i]).ok_or_else(vanishes);
             let axes = [along(0)?, along(1)?, along(2)?];
+            large_enough("sides", LEAST_SIDE_MM, axes.map(|[low, high]| high - low))?;
             Ok(format!("WZBoxDef \\{side}, shape, {}, {};", point(axes.map(|a| a[0])), point(axes.map(|a| a[1]))))
         }
         ZoneSolid::Sphere { center, radius_m } => {
             let radius = radius_mm(zone.side, radius_m).ok_or_else(vanishes)?;
+            large_enough("radii", LEAST_RADIUS_MM, [radius])?;
             let center = point(center.to_array().map(nearest_mm));
             Ok(format!("WZSphDef \\{side}, shape, {center}, {};", number(radius)))
         }
@@ -144,9 +153,19 @@ fn definition(zone: &Zone) -> Result<String, String> {
             let radius = radius_mm(zone.side, radius_m + grown_m).ok_or_else(vanishes)?;
             let (half_m, center) = (half_length_m + grown_m, in_frame.translation);
             let [low, high] = interval_mm(zone.side, center.z - half_m, center.z + half_m).ok_or_else(vanishes)?;
+            large_enough("radii", LEAST_RADIUS_MM, [radius])?;
+            large_enough("heights", LEAST_SIDE_MM, [high - low])?;
             let base = point([nearest_mm(center.x), nearest_mm(center.y), low]);
             Ok(format!("WZCylDef \\{side}, shape, {base}, {}, {};", number(radius), number(high - low)))
         }
+    }
+}
+
+/// Whether the controller takes a solid of these sizes, mm; else why not.
+fn large_enough<const N: usize>(what: &str, least: f64, sizes: [f64; N]) -> Result<(), String> {
+    match sizes.into_iter().find(|size| *size < least) {
+        Some(size) => Err(format!("it has {} mm, and world zones have {what} of {least} mm or more", number(size))),
+        None => Ok(()),
     }
 }
 

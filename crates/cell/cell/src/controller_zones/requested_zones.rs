@@ -173,7 +173,8 @@ fn drop_shared_outputs(all: &mut [RegionZones<'_>]) {
             let what = format!(
                 "output {output} is not set: {count} zones have it, and each would lower it while the robot is in another one"
             );
-            zones.miss("", &what, Some("an output for each region, which the cell's controller joins"));
+            let hint = "an output for each zone: for each region, and `warning_output` beside `output`; one box, not the walls of a fence";
+            zones.miss("", &what, Some(hint));
         }
     }
 }

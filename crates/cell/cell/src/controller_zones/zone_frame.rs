@@ -10,8 +10,8 @@ use crate::Cell;
 /// The frame in which zones are written. It has to be the world frame of the robot's controller.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZoneFrame {
-    /// A link that no joint moves, or `world`: the world of the cell.
-    pub name: String,
+    /// A link that no joint moves; `None` for the world of the cell.
+    pub link: Option<String>,
     /// Its pose in the world of the cell.
     pub in_world: Pose,
 }
@@ -27,7 +27,7 @@ impl ZoneFrame {
         let chain = &robot.robot.chain;
         let links = || chain.links().iter().map(String::as_str);
         if name == Some("world") {
-            return Ok(Self { name: "world".into(), in_world: Pose::IDENTITY });
+            return Ok(Self { link: None, in_world: Pose::IDENTITY });
         }
         let link = name.map_or(Some(chain.root()), |name| chain.link(name)).ok_or_else(|| {
             let name = name.unwrap_or_default();
@@ -44,6 +44,14 @@ impl ZoneFrame {
         state.q.copy_from_slice(&robot.start);
         chain.forward(&mut state);
         let in_world = robot.base_in_world * state.link_in_root(link);
-        Ok(Self { name: chain.links()[link.0].clone(), in_world })
+        Ok(Self { link: Some(chain.links()[link.0].clone()), in_world })
+    }
+
+    /// The frame in words.
+    pub fn title(&self) -> String {
+        match &self.link {
+            None => "the world of the cell file".into(),
+            Some(link) => format!("the frame of the link \"{link}\""),
+        }
     }
 }

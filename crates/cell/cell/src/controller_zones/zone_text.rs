@@ -15,11 +15,7 @@ pub(super) fn ascii(text: &str) -> String {
 /// The first comments: whose zones these are, in which frame, and what no zone does.
 pub(super) fn head(cell: &Cell, robot: RobotId, frame: &ZoneFrame) -> Vec<String> {
     let robot = &cell.robots[robot.0];
-    let frame = if frame.name == "world" {
-        "the world of the cell file".to_owned()
-    } else {
-        format!("the frame of the link \"{}\"", frame.name)
-    };
+    let frame = frame.title();
     [
         format!("Zones of robot \"{}\", from the regions of the cell \"{}\".", robot.name, cell.name),
         format!("Written by elbowroom {}.", env!("CARGO_PKG_VERSION")),

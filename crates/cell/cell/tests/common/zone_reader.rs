@@ -134,6 +134,10 @@ pub fn rapid(text: &str) -> Vec<ReadZone> {
                 assert_eq!((declared.get(name), routine.as_deref()), (Some(&data), Some(of_routine)), "{line}");
                 zones.push(ReadZone { name: name.to_owned(), shape, is_outside, stops, output, is_on: true });
             }
+            ("WZFree", [name]) => {
+                assert_eq!(declared.get(name), Some(&"wztemporary"), "{line}");
+                assert!(zones.iter().all(|zone| zone.name != *name), "erased before it is defined: {line}");
+            }
             ("WZDisable", [name]) => {
                 assert_eq!(declared.get(name), Some(&"wztemporary"), "{line}");
                 zones.iter_mut().find(|zone| zone.name == *name).unwrap().is_on = false;

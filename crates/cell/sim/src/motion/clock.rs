@@ -232,6 +232,7 @@ impl ProgramClock {
             q: self.here.q.clone(),
             qd: self.velocity().collect(),
             rate: self.rate,
+            programmed_override: self.programmed_override(),
         }
     }
 

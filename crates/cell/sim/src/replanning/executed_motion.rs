@@ -20,6 +20,8 @@ pub struct ExecutedMotion {
     pub qd: Vec<f64>,
     /// Rate of the program's time, 0..1.
     pub rate: f64,
+    /// The largest rate that the program allows, 0..1.
+    pub programmed_override: f64,
 }
 
 /// The end of a planned move.

@@ -40,8 +40,8 @@ const WARNING_SHARES: [f64; 2] = [0.25, 0.0];
 /// The corner is rounded over at most half of the stretch that begins one stopping distance behind the robot, so that
 /// the robot could still stop before the rounding.
 const LEAVE_AFTER: f64 = 3.0;
-/// Rate of a program below which its speed at override 1 is not derived from the present speed.
-const MIN_RATE: f64 = 0.01;
+/// Smallest programmed override from which the speed at override 1 is derived.
+const MIN_OVERRIDE: f64 = 0.01;
 /// Speed below which a robot has no direction of motion, rad/s or m/s.
 const MIN_SPEED: f64 = 1e-6;
 /// Distance to the robot's configuration within which a new path must pass for the robot to enter it, rad or m.
@@ -200,8 +200,8 @@ impl<'a> PathReplanner<'a> {
         let in_motion = speed > MIN_SPEED;
         let departure = if in_motion {
             let along: Vec<f64> = motion.qd.iter().map(|v| v / speed).collect();
-            // The speed at override 1, at which the new path passes here: then its rate is the present one.
-            let program_speed = speed / motion.rate.clamp(MIN_RATE, 1.0);
+            // The new path passes here so fast that the robot enters it at a rate that the program allows.
+            let program_speed = speed / motion.programmed_override.clamp(MIN_OVERRIDE, 1.0);
             let length = acceleration_distance(program_speed, &along, &limits);
             let (passed_s, from) = ahead.straight_ahead(&along, LEAVE_AFTER * length + lead_s * speed)?;
             if passed_s >= *free_until_s {

@@ -14,7 +14,8 @@ struct Document<'a> {
     robot: &'a str,
     language: &'static str,
     /// Link or world in which the zones are given.
-    frame: &'a str,
+    /// The link whose frame it is; null for the world of the cell.
+    frame: Option<&'a str>,
     regions: Vec<Row<'a>>,
     /// The text for the controller.
     text: &'a str,
@@ -52,7 +53,7 @@ pub(super) fn export(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     }
     if args.json {
         let regions = exported.regions.iter().map(|region| row(&cell, region)).collect();
-        let (cell, robot, frame) = (&cell.name, &robot.name, &frame.name);
+        let (cell, robot, frame) = (&cell.name, &robot.name, frame.link.as_deref());
         print_json(&Document { cell, robot, language: language.name(), frame, regions, text: &exported.text })?;
     } else if args.out.is_none() {
         print(&exported.text)?;
