@@ -118,7 +118,8 @@ mod tests {
             .to_owned())
         };
         let commands = Commands(verbs(&[], &help(&[]).unwrap(), &help).unwrap());
-        let row = "| [`region`](options.md#region) | Edit regions | [roles](roles.md), [controllers](controllers.md) |\n";
+        let row =
+            "| [`region`](options.md#region) | Edit regions | [roles](roles.md), [controllers](controllers.md) |\n";
         assert!(commands.table().unwrap().ends_with(row));
         let options = commands.options();
         assert!(
