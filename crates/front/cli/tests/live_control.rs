@@ -99,6 +99,21 @@ warning = 100
         (process, address.expect("a control address"))
     }
 
+    /// The list of regions.
+    fn regions(folder: &Path, at: &str) -> String {
+        control(folder, &["regions", "--at", at, "--secret", "operator.secret"]).stdout
+    }
+
+    /// Starts the whole cell with simulated controllers, and waits until they are heard.
+    fn start_simulated(folder: &Path) -> (LiveProcess, String) {
+        let (process, at) = start(folder, &["--simulate"]);
+        let began = Instant::now();
+        while regions(folder, &at).contains("not heard") {
+            assert!(began.elapsed() < Duration::from_secs(20), "the simulated controller is not heard");
+        }
+        (process, at)
+    }
+
     #[test]
     fn a_running_cell_is_listed_switched_and_logged() {
         let folder = cell_and_tokens();
@@ -193,12 +208,8 @@ warning = 100
     fn a_region_is_not_switched_on_around_a_simulated_robot() {
         let folder = cell_and_tokens();
         let folder = folder.path();
-        let (_process, at) = start(folder, &["--simulate"]);
-        let began = Instant::now();
+        let (_process, at) = start_simulated(folder);
         let secret = ["--at", &at, "--secret", "programmer.secret"];
-        while control(folder, &[&["regions"][..], &secret].concat()).stdout.contains("not heard") {
-            assert!(began.elapsed() < Duration::from_secs(20), "the simulated controller is not heard");
-        }
         let off = control(folder, &[&["switch", "cart", "off"][..], &secret].concat());
         assert!(off.status == 0, "{}", off.stderr);
         let refused = control(folder, &[&["switch", "cart", "on"][..], &secret].concat());
@@ -260,13 +271,7 @@ warning = 100
         let text = CELL.replace("[region.cart]", &format!("{program}[region.cart]"));
         let text = text.replace("centre = [0, 0, 1000]", "centre = [0, 900, 1000]");
         std::fs::write(folder.join("cell.toml"), text).unwrap();
-        let (_process, at) = start(folder, &["--simulate"]);
-        let secret = ["--at", &at, "--secret", "programmer.secret"];
-        let heard = || control(folder, &[&["regions"][..], &secret].concat()).stdout;
-        let began = Instant::now();
-        while heard().contains("not heard") {
-            assert!(began.elapsed() < Duration::from_secs(20), "the simulated controller is not heard");
-        }
+        let (_process, at) = start_simulated(folder);
         let mut lesson = Lesson::start(folder, &at, &["--shape", "sphere", "--warning", "20", "--add", "--off"]);
         lesson.hear("1 of 2: move the TCP of rail to the centre");
         lesson.type_line("");
@@ -291,7 +296,8 @@ warning = 100
         assert!(toml.contains("add region.lamp") && table.contains("shape = \"sphere\"\n"), "{toml}");
         let radius: f64 = table.split_once("radius = ").unwrap().1.lines().next().unwrap().parse().unwrap();
         assert!((radius - (surface - centre)).abs() < 1e-3 && table.contains("life = \"temporary\"\n"), "{table}");
-        assert!(heard().contains("lamp                 forbidden  temporary  off"), "{}", heard());
+        let listed = regions(folder, &at);
+        assert!(listed.contains("lamp                 forbidden  temporary  off"), "{listed}");
         // What is printed is what a cell file takes.
         let text = std::fs::read_to_string(folder.join("cell.toml")).unwrap() + &format!("[region.lamp]\n{table}");
         std::fs::write(folder.join("taught.toml"), text).unwrap();
@@ -302,10 +308,7 @@ warning = 100
     fn points_that_make_no_region_are_taught_again_and_nothing_is_added_without_an_end() {
         let folder = cell_and_tokens();
         let folder = folder.path();
-        let (_process, at) = start(folder, &["--simulate"]);
-        let secret = ["--at", &at, "--secret", "programmer.secret"];
-        let heard = || control(folder, &[&["regions"][..], &secret].concat()).stdout;
-        while heard().contains("not heard") {}
+        let (_process, at) = start_simulated(folder);
         let mut lesson = Lesson::start(folder, &at, &["--shape", "sphere"]);
         for _ in 0..2 {
             lesson.hear("1 of 2");
@@ -338,7 +341,7 @@ warning = 100
             &["teach", "cart", "--at", &at, "--secret", "operator.secret", "--robot", "rail", "--shape", "box"],
         );
         assert!(known.status == 2 && known.stderr.contains("there is a region `cart` already"), "{}", known.stderr);
-        assert!(!heard().contains("lamp"));
+        assert!(!regions(folder, &at).contains("lamp"));
         // What was taught is printed although the service does not add it; and words that mean nothing accept nothing.
         let mut lesson = Lesson::start(folder, &at, &["--shape", "sphere4", "--add"]);
         lesson.hear("1 of 4");

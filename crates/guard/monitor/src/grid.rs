@@ -5,8 +5,6 @@ use std::ops::Range;
 
 use elbowroom_spatial::Pose;
 
-/// Most cells of a grid.
-const MAX_CELLS: u64 = 65_535;
 /// By how much a range may be longer than a turn, rad.
 const ROUNDING: f64 = 1e-9;
 /// Digital outputs of a robot.
@@ -84,7 +82,7 @@ pub(crate) struct Coordinate {
 
 impl GridAxis {
     /// Length of a division, m or rad.
-    fn step(&self) -> f64 {
+    pub fn step(&self) -> f64 {
         (self.to - self.from) / f64::from(self.count)
     }
 
@@ -103,6 +101,9 @@ impl GridAxis {
 }
 
 impl Grid {
+    /// Most cells of a grid.
+    pub const MAX_CELLS: u64 = 65_535;
+
     /// Number of cells.
     pub fn cells(&self) -> u64 {
         self.axes.iter().fold(1, |cells, axis| u64::from(axis.count).saturating_mul(cells))
@@ -147,11 +148,12 @@ impl Grid {
         if let Some(why) = self.axes.iter().find_map(|axis| self.axis_problem(axis)) {
             return Some(why);
         }
-        if self.axes.is_empty() || self.cells() > MAX_CELLS {
+        if self.axes.is_empty() || self.cells() > Self::MAX_CELLS {
             return Some(format!(
-                "it has {} axes and {} cells, not 1 to {MAX_CELLS} cells",
+                "it has {} axes and {} cells, not 1 to {} cells",
                 self.axes.len(),
-                self.cells()
+                self.cells(),
+                Self::MAX_CELLS
             ));
         }
         if self.channels().end > CHANNELS {

@@ -18,10 +18,6 @@ const HYSTERESIS_M: f64 = 1e-3;
 const HYSTERESIS_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 /// The ends of a joint without limits, rad.
 const HALF_TURNS: [f64; 2] = [-std::f64::consts::PI, std::f64::consts::PI];
-/// Divisions of an axis, at most.
-const MOST_DIVISIONS: u32 = 65_535;
-/// Cells of a grid, at most.
-const MOST_CELLS: u64 = 65_535;
 
 /// Reads the grids of all robots.
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
@@ -57,7 +53,7 @@ fn grid(name: &str, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Gr
         None => cuboid(t, units)?,
     };
     let cells = t.need("cells", CELLS)?;
-    let counts = cells.list(CELLS)?.iter().map(|v| v.whole(1, MOST_DIVISIONS)).collect::<Result<Vec<u32>>>()?;
+    let counts = cells.list(CELLS)?.iter().map(|v| v.whole(1, Grid::MAX_CELLS as u32)).collect::<Result<Vec<u32>>>()?;
     if counts.len() != ends.len() {
         let what = format!("has {} numbers for {} axes", counts.len(), ends.len());
         return Err(cells.error(what).hint("one number per axis of the box or per joint; 1 leaves an axis undivided"));
@@ -65,8 +61,8 @@ fn grid(name: &str, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Gr
     let axes = ends.iter().zip(counts).map(|([from, to], count)| GridAxis { from: *from, to: *to, count }).collect();
     let output = t.need("output", "output = 8")?;
     let grid = Grid { name: name.into(), space, axes, output: output.whole(0, 63)? as u8, hysteresis };
-    if grid.cells() > MOST_CELLS {
-        let what = format!("makes {} cells, more than {MOST_CELLS}", grid.cells());
+    if grid.cells() > Grid::MAX_CELLS {
+        let what = format!("makes {} cells, more than {}", grid.cells(), Grid::MAX_CELLS);
         return Err(cells.error(what).hint("fewer divisions, or a grid for each part"));
     }
     if grid.channels().end > 64 {
@@ -83,7 +79,7 @@ fn grid(name: &str, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Gr
 
 /// At most half of the smallest cell.
 fn check_hysteresis(grid: &Grid, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<()> {
-    let smallest = grid.axes.iter().map(|a| (a.to - a.from) / f64::from(a.count)).fold(f64::INFINITY, f64::min);
+    let smallest = grid.axes.iter().map(GridAxis::step).fold(f64::INFINITY, f64::min);
     if grid.hysteresis <= 0.5 * smallest {
         return Ok(());
     }

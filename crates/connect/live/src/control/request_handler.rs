@@ -146,9 +146,10 @@ impl RequestHandler {
                 queue: slot.map(|slot| slot.queue.clone()).unwrap_or_default(),
             }
         };
-        // Without setups no monitor runs, and nobody knows which tools are attached.
-        let setups = configure::setups(&cell).unwrap_or_default();
         let states = joints.states();
+        // They tell which tools the attached volumes belong to. Without setups no monitor runs.
+        let has_attached = states.iter().flatten().any(|state| !state.attached.is_empty());
+        let setups = if has_attached { configure::setups(&cell).unwrap_or_default() } else { Vec::new() };
         let robots = cell.robots.iter().zip(&states).enumerate();
         let robots = robots.map(|(i, (r, state))| RobotOverview::new(r, setups.get(i), state.as_ref())).collect();
         Overview {

@@ -141,7 +141,7 @@ pub(crate) struct AddArgs {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The points are those of `elbowroom teach`: move the robot to each, and press Enter. Then move it to the obstacle and see
+    after_help = "The points are the same as for `elbowroom teach`: move the robot to each, and press Enter. Then move it to the obstacle and see
 its distance from the region, which should be 0 where the tool touches the obstacle.
 
 Examples:
