@@ -5,13 +5,11 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_access::text_file;
 use elbowroom_formats::Diagnostic;
-use elbowroom_spatial::Vec3;
 use toml_edit::{Item, TableLike, Value};
 
-use crate::area_border::{AROUND, crossing_edges, crossing_text};
 use crate::shield_report::ShieldReport;
 use crate::toml_edits::{appended, document, put, with_line_ends_of};
-use crate::{Cell, CellFile, CellFixture, DrawnFixture, DrawnTarget, Units, seal};
+use crate::{Cell, CellFile, CellFixture, DrawnFixture, Units, seal};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -76,13 +74,6 @@ impl FixtureEditor {
         let cell = CellFile::parse(&self.path, &text)?.resolve()?;
         let index = cell.guidance.fixtures.iter().position(|f| f.name == drawn.name);
         let index = index.ok_or_else(|| Diagnostic::new(&self.path, None, "the drawn fixture is not in the cell"))?;
-        if let DrawnTarget::Area(points) = &drawn.target {
-            let points: Vec<Vec3> = points.iter().copied().map(Vec3::from).collect();
-            let object = &cell.objects[cell.guidance.fixtures[index].protects.0];
-            if let Some(crossing) = crossing_edges(object, &points) {
-                return Err(Diagnostic::new(&self.path, None, crossing_text(crossing)).hint(AROUND));
-            }
-        }
         Ok(FixtureDraft { drawn: drawn.clone(), before: self.text.clone(), text, table, replaces, cell, index })
     }
 

@@ -261,3 +261,16 @@ fn a_sealed_cell_is_refused_with_what_to_do() {
     assert_eq!(folder.text(), CELL);
     assert!(Cell::load(folder.file()).is_ok());
 }
+
+/// What is refused where it is drawn is refused where it is typed, too, with its line.
+#[test]
+fn an_area_that_is_typed_must_not_cross_itself_either() {
+    let typed = |points: &str| {
+        let table = format!("[fixture.patch]\nprotects = \"block\"\ntarget = {{ area = {points} }}\nwidth = 4\n");
+        Cell::parse("cell.toml", &format!("{CELL}{table}"))
+    };
+    typed("[[0, 0, 100], [20, 0, 100], [20, 20, 100], [0, 30, 100]]").unwrap_or_else(|e| panic!("{e}"));
+    let crossed = typed("[[0, 0, 100], [20, 20, 100], [20, 0, 100], [0, 30, 100]]").unwrap_err();
+    assert_eq!(crossed.line, Some(CELL.lines().count() + 3), "{crossed}");
+    assert!(crossed.to_string().contains("crosses itself: after its points 1 and 3"), "{crossed}");
+}

@@ -6,6 +6,7 @@ use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_robot::ObjectId;
+use elbowroom_scene::Object;
 use elbowroom_shared_control::{ProtectedSurface, ShieldSettings, ShieldTarget};
 use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Vec3};
@@ -14,6 +15,7 @@ use super::fixture_tool::tool;
 use super::models;
 
 use super::schema::{FIXTURE, FIXTURE_DRILL, FIXTURE_FACES, FIXTURE_TARGET, names};
+use crate::area_border::{AROUND, crossing_edges, crossing_text};
 use crate::fixture::{CellFixture, ShieldSource};
 use crate::{Cell, Units};
 
@@ -42,10 +44,10 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
 fn fixture(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellFixture> {
     t.only(&names(&[FIXTURE]))?;
     let protects = object(&t.need("protects", "protects = \"bone\"   (an object)")?, cell)?;
-    let object_in_world = cell.objects[protects.0].in_world;
+    let object = &cell.objects[protects.0];
     let shield = match t.get("mesh") {
-        Some(file) => ShieldSource::Mesh(shield_of_file(&file, t, object_in_world)?),
-        None => generated(t, cell.units, object_in_world)?,
+        Some(file) => ShieldSource::Mesh(shield_of_file(&file, t, object.in_world)?),
+        None => generated(t, cell.units, object)?,
     };
     Ok(CellFixture {
         name: name.to_owned(),
@@ -58,8 +60,8 @@ fn fixture(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellFixture> {
     })
 }
 
-fn generated(t: &Table<'_>, units: Units, object_in_world: Pose) -> Result<ShieldSource> {
-    let (target, depth_m) = target(&t.need("target", TARGET)?, units, object_in_world)?;
+fn generated(t: &Table<'_>, units: Units, object: &Object) -> Result<ShieldSource> {
+    let (target, depth_m) = target(&t.need("target", TARGET)?, units, object)?;
     let length = |key: &str, default_m: f64| t.get(key).map_or(Ok(default_m), |v| units.not_negative_length(&v));
     let depth = t.get("depth");
     if let (Some(depth), Some(_)) = (&depth, depth_m) {
@@ -117,14 +119,14 @@ fn object(v: &Value<'_>, cell: &Cell) -> Result<ObjectId> {
 }
 
 /// The target in the frame of the object, and the depth of a drill.
-fn target(v: &Value<'_>, units: Units, object_in_world: Pose) -> Result<(ShieldTarget, Option<f64>)> {
+fn target(v: &Value<'_>, units: Units, object: &Object) -> Result<(ShieldTarget, Option<f64>)> {
     let t = v.table(TARGET)?;
     t.only(&names(&[FIXTURE_TARGET]))?;
     let given: Vec<&str> = FIXTURE_TARGET.iter().map(|k| k.name).filter(|k| t.get(k).is_some()).collect();
     let [kind] = given[..] else {
         return Err(v.error(format!("has {} of line, area, drill and faces_within", given.len())).hint(TARGET));
     };
-    let local = |p: Vec3| object_in_world.inverse_transform_point(p);
+    let local = |p: Vec3| object.in_world.inverse_transform_point(p);
     let points = |key: &str, least: usize| -> Result<Vec<Vec3>> {
         let value = t.need(key, TARGET)?;
         let list = value.list(TARGET)?;
@@ -135,14 +137,22 @@ fn target(v: &Value<'_>, units: Units, object_in_world: Pose) -> Result<(ShieldT
     };
     match kind {
         "line" => Ok((ShieldTarget::Line(points("line", 2)?), None)),
-        "area" => Ok((ShieldTarget::Area(points("area", 3)?), None)),
+        "area" => {
+            let area = points("area", 3)?;
+            let in_world: Vec<Vec3> = area.iter().map(|p| object.in_world.transform_point(*p)).collect();
+            if let Some(crossing) = crossing_edges(object, &in_world) {
+                let what = format!("does not bound an area: {}", crossing_text(crossing));
+                return Err(t.need("area", TARGET)?.error(what).hint(AROUND));
+            }
+            Ok((ShieldTarget::Area(area), None))
+        }
         "drill" => {
             const EXAMPLE: &str = "drill = { at = [0, 0, 100], axis = [0, 0, -1], depth = 20 }";
             let drill = t.need("drill", TARGET)?.table(EXAMPLE)?;
             drill.only(&names(&[FIXTURE_DRILL]))?;
             let at = local(units.point(&drill.need("at", EXAMPLE)?)?);
             let given = drill.need("axis", EXAMPLE)?;
-            let axis = object_in_world.inverse_transform_vector(given.three()?);
+            let axis = object.in_world.inverse_transform_vector(given.three()?);
             if axis.try_normalize().is_none() {
                 return Err(given.error("has no length").hint(EXAMPLE));
             }
