@@ -251,9 +251,14 @@ fn surface_points(robot: &Robot) -> Vec<(LinkId, Vec3)> {
 }
 
 /// Returns the smallest distance (m) of the arm from the crate over a run, and its time: at every fourth tick, at every
-/// point of its surface.
+/// point of its surface that could be nearer than the nearest before.
 pub(crate) fn clearance(trace: &str, robot: &Robot, crate_at: impl Fn(f64) -> Point2) -> (f64, f64) {
-    let points = surface_points(robot);
+    let mut links: Vec<Vec<Vec3>> = vec![Vec::new(); robot.colliders.len()];
+    for (link, p) in surface_points(robot) {
+        links[link.0].push(p);
+    }
+    let radius = |points: &Vec<Vec3>| points.iter().map(|p| p.length()).fold(0.0, f64::max);
+    let radii: Vec<f64> = links.iter().map(radius).collect();
     let mut state = ChainState::new(&robot.chain);
     let (mut least, mut when) = (f64::INFINITY, 0.0);
     for row in trace.lines().skip(1).step_by(4) {
@@ -262,22 +267,29 @@ pub(crate) fn clearance(trace: &str, robot: &Robot, crate_at: impl Fn(f64) -> Po
         state.q.copy_from_slice(q);
         robot.chain.forward(&mut state);
         let crate_at = crate_at(t_s);
-        let poses: Vec<Pose> = (0..robot.colliders.len()).map(|l| state.link_in_root(LinkId(l))).collect();
-        for (link, p) in &points {
-            let p = poses[link.0].transform_point(*p);
-            let outside = |x: f64, half: f64| (x.abs() - half).max(0.0);
-            let [x, y, z] = [
-                outside(p.x - crate_at.x, SIZE[0] / 2.0),
-                outside(p.y - crate_at.y, SIZE[1] / 2.0),
-                outside(p.z - SIZE[2] / 2.0, SIZE[2] / 2.0),
-            ];
-            let distance = (x * x + y * y + z * z).sqrt();
-            if distance < least {
-                (least, when) = (distance, t_s);
+        for (link, points) in links.iter().enumerate() {
+            let pose = state.link_in_root(LinkId(link));
+            if distance_m(pose.translation, crate_at) - radii[link] > least {
+                continue;
+            }
+            for p in points {
+                let distance = distance_m(pose.transform_point(*p), crate_at);
+                if distance < least {
+                    (least, when) = (distance, t_s);
+                }
             }
         }
     }
     (least, when)
+}
+
+/// Distance of a point from the crate, m.
+fn distance_m(p: Vec3, crate_at: Point2) -> f64 {
+    let outside = |x: f64, half: f64| (x.abs() - half).max(0.0);
+    let x = outside(p.x - crate_at.x, SIZE[0] / 2.0);
+    let y = outside(p.y - crate_at.y, SIZE[1] / 2.0);
+    let z = outside(p.z - SIZE[2] / 2.0, SIZE[2] / 2.0);
+    (x * x + y * y + z * z).sqrt()
 }
 
 /// Comparison of the obstacles seen with the ground truth.
