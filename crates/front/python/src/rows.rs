@@ -37,7 +37,9 @@ fn fill<W: Send>(
 ) {
     let count = out.len() / width;
     let joints = values.len() / count.max(1);
-    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(count / PER_THREAD).max(1);
+    // Asking for the cores takes tens of microseconds, so few rows do not ask.
+    let most = count / PER_THREAD;
+    let cores = if most < 2 { 1 } else { std::thread::available_parallelism().map_or(1, usize::from).min(most) };
     let run = |values: &[f64], out: &mut [f64]| {
         let mut own = worker();
         for (row, place) in out.chunks_exact_mut(width).enumerate() {
