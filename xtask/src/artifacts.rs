@@ -7,10 +7,10 @@ use serde_json::Value;
 
 use crate::shell::command;
 
-/// A compiled program.
+/// A compiled program, or a shared library.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Artifact {
-    /// The file to start.
+    /// The file to start or to load.
     pub executable: PathBuf,
     /// The `Cargo.toml` of its package.
     pub manifest: PathBuf,
@@ -55,7 +55,7 @@ fn artifacts(messages: &str) -> Result<Vec<Artifact>, String> {
     let mut found = Vec::new();
     for line in messages.lines().filter(|line| line.starts_with('{')) {
         let message: Value = serde_json::from_str(line).map_err(|e| format!("cargo's message `{line}`: {e}"))?;
-        let Some(executable) = message["executable"].as_str() else { continue };
+        let Some(executable) = message["executable"].as_str().or_else(|| shared_library(&message)) else { continue };
         let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
         found.push(Artifact {
             executable: executable.into(),
@@ -68,6 +68,14 @@ fn artifacts(messages: &str) -> Result<Vec<Artifact>, String> {
     Ok(found)
 }
 
+/// The shared library of a message.
+fn shared_library(message: &Value) -> Option<&str> {
+    let files = message["filenames"].as_array()?.iter().filter_map(Value::as_str);
+    files.into_iter().find(|file| {
+        file.ends_with(std::env::consts::DLL_SUFFIX) && message["target"]["kind"] != serde_json::json!(["proc-macro"])
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -77,10 +85,21 @@ mod tests {
         let messages = concat!(
             r#"{"reason":"compiler-artifact","manifest_path":"/w/c/Cargo.toml","profile":{"test":false},"executable":null,"target":{"kind":["lib"],"name":"c"}}"#,
             "\n   Finished\n",
+            r#"{"reason":"compiler-artifact","manifest_path":"/w/m/Cargo.toml","profile":{"test":false},"executable":null,"filenames":["/t/libm.so"],"target":{"kind":["proc-macro"],"name":"m"}}"#,
+            "\n",
+            r#"{"reason":"compiler-artifact","manifest_path":"/w/d/Cargo.toml","profile":{"test":false},"executable":null,"filenames":["/t/libd.so"],"target":{"kind":["cdylib"],"name":"d"}}"#,
+            "\n",
             r#"{"reason":"compiler-artifact","manifest_path":"/w/c/Cargo.toml","profile":{"test":true},"executable":"/t/c-1","target":{"kind":["bench"],"name":"times"}}"#,
             "\n",
             r#"{"reason":"build-finished","success":true}"#
         );
+        let library = Artifact {
+            executable: "/t/libd.so".into(),
+            manifest: "/w/d/Cargo.toml".into(),
+            kind: "cdylib".into(),
+            name: "d".into(),
+            is_test: false,
+        };
         let expected = Artifact {
             executable: "/t/c-1".into(),
             manifest: "/w/c/Cargo.toml".into(),
@@ -88,7 +107,7 @@ mod tests {
             name: "times".into(),
             is_test: true,
         };
-        assert_eq!(artifacts(messages).unwrap(), [expected]);
+        assert_eq!(artifacts(messages).unwrap(), [library, expected]);
         assert!(artifacts("{not json").is_err());
     }
 }

@@ -1,18 +1,28 @@
-//! Python that a few tests use as an independent reference: Pinocchio for kinematics, Coal for distances, readers of recordings.
+//! Python of the tests: independent references (Pinocchio for kinematics, Coal for distances, readers of recordings), and what the
+//! tests of the package need.
 
 use std::path::{Path, PathBuf};
 
 use crate::shell;
 
 /// Pinned, so that a test compares with the same reference everywhere.
-const PACKAGES: [&str; 5] =
-    ["pin==4.1.0", "numpy==2.4.6", "mcap==1.6.0", "mcap-ros2-support==0.6.0", "rosbags==0.11.9"];
+const PACKAGES: [&str; 8] = [
+    "pin==4.1.0",
+    "numpy==2.4.6",
+    "mcap==1.6.0",
+    "mcap-ros2-support==0.6.0",
+    "rosbags==0.11.9",
+    "pytest==9.2.0",
+    "hypothesis==6.170.17",
+    "mypy==2.4.1",
+];
 
 /// Checks that the pinned versions are installed.
 const PROBE: &str = "import pinocchio, coal, numpy, mcap_ros2.decoder, rosbags.typesys
 from importlib.metadata import version
 assert pinocchio.__version__ == '4.1.0' and numpy.__version__ == '2.4.6'
-assert (version('mcap'), version('mcap-ros2-support'), version('rosbags')) == ('1.6.0', '0.6.0', '0.11.9')";
+assert (version('mcap'), version('mcap-ros2-support'), version('rosbags')) == ('1.6.0', '0.6.0', '0.11.9')
+assert (version('pytest'), version('hypothesis'), version('mypy')) == ('9.2.0', '6.170.17', '2.4.1')";
 
 /// Path of the interpreter inside `target/venv`, whether or not it exists.
 pub fn interpreter(root: &Path) -> PathBuf {

@@ -13,7 +13,7 @@ pub struct Program {
     pub name: String,
     /// The file to start.
     pub executable: PathBuf,
-    /// Programs of its package, which its tests start.
+    /// Programs and shared libraries of its package, which its tests start or load.
     pub started: Vec<PathBuf>,
     /// The folder of its package, in which it is started.
     pub folder: PathBuf,

@@ -75,7 +75,11 @@ pub fn linked(library: &str) -> Vec<OsString> {
     vec![search_path("-L"), search_path("-Wl,-rpath,"), format!("-l{library}").into(), "-lm".into(), "-pthread".into()]
 }
 
-fn library_folder(library: &str) -> PathBuf {
+/// The folder of a shared library of the workspace, which cargo has compiled beside the test that calls this.
+///
+/// # Panics
+/// If the library is not there.
+pub fn library_folder(library: &str) -> PathBuf {
     let test = std::env::current_exe().expect("a test is a program");
     let folder = test.parent().expect("a program is in a folder").to_owned();
     let file = format!("{}{library}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);

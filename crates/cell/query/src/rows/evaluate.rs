@@ -107,7 +107,8 @@ pub(super) fn evaluate_blocks<R: Send>(
     take: &mut dyn FnMut(&[R]) -> bool,
 ) -> Result<QueryEffort, Diagnostic> {
     let blocks = count.div_ceil(BLOCK);
-    let cores = std::thread::available_parallelism().map_or(1, usize::from).min(blocks);
+    // Asking for the cores takes tens of microseconds, as long as some states.
+    let cores = if blocks < 2 { 1 } else { std::thread::available_parallelism().map_or(1, usize::from).min(blocks) };
     let wrong = |e: SceneError| Diagnostic::new(&states.file, None, e);
     let mut done = QueryEffort::default();
     if cores <= 1 {

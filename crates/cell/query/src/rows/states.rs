@@ -56,6 +56,16 @@ impl QueryStates {
         joint_states::JointStates::parse(path, text, &options(model)).map(Self::new)
     }
 
+    /// States from rows of the values of all joints of all robots, side by side in the order of the model, rad or m.
+    /// Values beyond limits are accepted.
+    ///
+    /// # Panics
+    /// If the number of values is not a multiple of the number of joints.
+    pub fn of_rows(model: &QueryModel, values: Vec<f64>) -> Self {
+        let joints = model.robots.iter().map(|robot| robot.robot.chain.dof());
+        Self::new(joint_states::JointStates::from_rows(&model.file, joints, values))
+    }
+
     fn new(mut states: joint_states::JointStates) -> Self {
         let warnings = std::mem::take(&mut states.warnings);
         Self { file: states.file.clone(), warnings, states }

@@ -73,6 +73,16 @@ impl OccupancyArray {
         }
     }
 
+    /// Numbers of cells along the axes.
+    pub fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// The cells, 1 for blocked; the last axis varies fastest.
+    pub fn cells(&self) -> &[u8] {
+        &self.cells
+    }
+
     /// Number of blocked cells.
     pub fn blocked(&self) -> u64 {
         self.cells.iter().map(|&c| u64::from(c)).sum()

@@ -64,6 +64,24 @@ impl JointStates {
         Self { file: file.to_owned(), warnings: Vec::new(), ends, values, times_s: Vec::new(), rows: 1 }
     }
 
+    /// Creates states from rows, each with the values of all robots side by side. `file` is named in messages.
+    ///
+    /// # Panics
+    /// If the number of values is not a multiple of the number of joints.
+    pub fn from_rows(file: &Path, joints: impl IntoIterator<Item = usize>, values: Vec<f64>) -> Self {
+        let ends: Vec<usize> = joints
+            .into_iter()
+            .scan(0, |end, joints| {
+                *end += joints;
+                Some(*end)
+            })
+            .collect();
+        let width = ends.last().copied().unwrap_or(0).max(1);
+        assert!(values.len().is_multiple_of(width), "{} values in rows of {width}", values.len());
+        let rows = values.len() / width;
+        Self { file: file.to_owned(), warnings: Vec::new(), ends, values, times_s: Vec::new(), rows }
+    }
+
     /// Reads a file.
     ///
     /// # Errors

@@ -1,0 +1,150 @@
+//! Cells: runs, and maps of joint space.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use elbowroom::cell::Cell as Model;
+use elbowroom::cspace::GridAxis;
+use elbowroom::query::map::{self, CellMap, MapModel, MapProgress, MapRequest};
+use elbowroom::sim::{RunOptions, RunOutcome, RunSummary, simulate};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::error::Fault;
+
+/// A cell file and what it describes: robots, objects, regions, programs.
+///
+/// Examples
+/// --------
+/// >>> import elbowroom as er
+/// >>> cell = er.Cell.load("examples/figure12/cell.toml")
+/// >>> cell.robots
+/// ['ns16']
+#[pyclass(module = "elbowroom", frozen)]
+pub struct Cell {
+    pub(crate) model: Arc<Model>,
+    path: PathBuf,
+}
+
+/// The summary of a run as JSON.
+fn run(cell: &Model, options: &RunOptions) -> Result<(String, RunOutcome), Fault> {
+    let outcome = simulate(cell, options)?;
+    let summary = serde_json::to_string(&RunSummary::from(&outcome.recording));
+    Ok((summary.map_err(|e| Fault::Argument(format!("the summary of the run: {e}")))?, outcome))
+}
+
+#[pymethods]
+impl Cell {
+    /// Load a cell file.
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    ///     With file, line, and what to write instead.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let model = py.detach(|| Model::load(&path).map_err(Fault::from))?;
+        Ok(Self { model: Arc::new(model), path })
+    }
+
+    /// The name of the cell.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.model.name
+    }
+
+    /// The file.
+    #[getter]
+    fn path(&self) -> &PathBuf {
+        &self.path
+    }
+
+    /// The names of the robots, in the order of the file.
+    #[getter]
+    fn robots(&self) -> Vec<&str> {
+        self.model.robots.iter().map(|robot| robot.name.as_str()).collect()
+    }
+
+    /// Remarks about the file.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.model.warnings.iter().map(ToString::to_string).collect()
+    }
+
+    /// Run the programs in simulated time under the monitors.
+    ///
+    /// Parameters
+    /// ----------
+    /// monitor
+    ///     Whether the monitors limit the speed override; otherwise they observe.
+    /// avoidance
+    ///     Whether robots evade; otherwise all follow their programs.
+    /// repeat
+    ///     How often the programs run.
+    ///
+    /// Returns
+    /// -------
+    /// Run
+    ///
+    /// Raises
+    /// ------
+    /// FileError
+    ///     If a program cannot be carried out.
+    #[pyo3(signature = (*, monitor=true, avoidance=true, repeat=1))]
+    fn run<'py>(&self, py: Python<'py>, monitor: bool, avoidance: bool, repeat: u32) -> PyResult<Bound<'py, PyAny>> {
+        let options = RunOptions { apply_override: monitor, avoidance, repeat, ..RunOptions::default() };
+        let (summary, outcome) = py.detach(|| run(&self.model, &options))?;
+        let summary = py.import("json")?.getattr("loads")?.call1((summary,))?;
+        let notes: Vec<String> = outcome.notes.iter().map(ToString::to_string).collect();
+        py.import("elbowroom.results")?.getattr("Run")?.call1((summary, outcome.has_violation(), notes))
+    }
+
+    /// Compute the cells of joint space that objects block.
+    ///
+    /// Parameters
+    /// ----------
+    /// robot
+    ///     The robot; optional if there is only one, or only one `[map.ROBOT]`.
+    /// model
+    ///     Model of the objects: `"exact"`, `"slices"`, `"sphere"`, `"spheres=8"` or `"box"`. No model misses a blocked cell.
+    ///
+    /// Returns
+    /// -------
+    /// JointMap
+    #[pyo3(signature = (robot=None, *, model="exact"))]
+    fn map<'py>(&self, py: Python<'py>, robot: Option<String>, model: &str) -> PyResult<Bound<'py, PyAny>> {
+        let model: MapModel = model.parse().map_err(|e| Fault::Argument(format!("`model`: {e}")))?;
+        if !model.is_conservative() {
+            let text = "`model` is \"seeds\", which misses cells\n  write: exact, slices, sphere, spheres=N or box";
+            return Err(Fault::Argument(text.into()).into());
+        }
+        let request = MapRequest { robot, model, ..MapRequest::default() };
+        let found =
+            py.detach(|| map::map_with(&self.model, &request, &|_: MapProgress<'_>| ()).map_err(Fault::from))?;
+        joint_map(py, found)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Cell({:?}: {} robots, {} objects)", self.name(), self.model.robots.len(), self.model.objects.len())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("elbowroom.pickles")?.getattr("reduced_cell")?.call1((&self.path,))
+    }
+}
+
+/// A map as an object of the package.
+fn joint_map(py: Python<'_>, map: CellMap) -> PyResult<Bound<'_, PyAny>> {
+    let Some(dense) = map.dense else {
+        let text = "the map has too many cells for an array\n  write: a larger `step` in [map.ROBOT] of the cell file";
+        return Err(Fault::Argument(text.into()).into());
+    };
+    let joints: Vec<&str> = map.axes.iter().map(GridAxis::joint).collect();
+    let centers = |axis: &GridAxis| (0..axis.count()).map(|cell| axis.center(cell)).collect();
+    let centers: Vec<_> = map.axes.iter().map(|axis| PyArray1::from_vec(py, centers(axis))).collect();
+    let blocked = PyArray1::from_slice(py, dense.cells());
+    let shape = dense.shape().to_vec();
+    let by_object: Vec<(&str, u64)> = map.obstacles.iter().map(|o| (o.name.as_str(), o.blocks.blocked())).collect();
+    let make = py.import("elbowroom.results")?.getattr("JointMap")?.getattr("_of")?;
+    make.call1((&map.robot, joints, centers, blocked, shape, by_object))
+}

@@ -1,0 +1,268 @@
+//! Collision and distance of many states.
+
+use std::sync::Arc;
+
+use elbowroom::cell::{OutOfReachProofs, QueryModel};
+use elbowroom::query::{self, Level, Query, QueryKind, QueryPairs, QueryRow, QueryStates};
+use elbowroom::scene::{CheckerOptions, Scene, SceneState};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::arrays::{CHUNK, Rows};
+use crate::cell::Cell;
+use crate::error::Fault;
+use crate::robot::{Robot, joint_names};
+use crate::rows::shaped;
+
+/// Robots and objects with their scene: constant, and shared by threads.
+struct Model {
+    query: QueryModel,
+    scene: Scene,
+    start: SceneState,
+    /// Names of the columns of states: joints of the robots, side by side.
+    columns: Vec<String>,
+}
+
+/// Collision, distance and tolerance of the states of a robot or a cell.
+///
+/// The answers are those of `elbowroom query`, to the bit. All cores work; other threads of Python run meanwhile.
+///
+/// Parameters
+/// ----------
+/// source
+///     A `Robot`, or a `Cell`, with its objects.
+/// level
+///     The resolution: `"auto"` (exact), `"L3"`, `"hull"`, `"capsule"`, `"L2"`, `"L2:1"` to `"L2:8"` or `"L1"`. All but the first
+///     two are conservative.
+/// between
+///     Only these pairs, as `"arm,table;arm/link_3,post"`: robots, links, objects, regions.
+///
+/// Raises
+/// ------
+/// ArgumentError
+///     If a word or a name is not known.
+/// FileError
+///     If the files have no scene to check.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, elbowroom as er
+/// >>> checker = er.Checker(er.Robot.load("examples/models/rx60b/rx60b.urdf"))
+/// >>> q = np.array([[0, 0, 1.5, 0, 0, 0], [0, 2, 2, 0, 0, 0]], dtype=float)
+/// >>> checker.collides(q).tolist()
+/// [False, True]
+/// >>> checker.within(q, 0.5).tolist()
+/// [True, True]
+#[pyclass(module = "elbowroom", frozen)]
+pub struct Checker {
+    model: Arc<Model>,
+    source: Py<PyAny>,
+    level: String,
+    between: Option<String>,
+    options: CheckerOptions,
+    pairs: QueryPairs,
+}
+
+impl Model {
+    fn new(query: QueryModel) -> Result<Self, Fault> {
+        let scene = query.scene(OutOfReachProofs::Compute)?;
+        let start = query.start_state(&scene)?;
+        let columns = query.robots.iter().flat_map(|robot| {
+            let prefix = if query.is_single_robot { String::new() } else { format!("{}.", robot.name) };
+            joint_names(&robot.robot.chain).into_iter().map(move |joint| format!("{prefix}{joint}"))
+        });
+        let columns = columns.collect();
+        Ok(Self { query, scene, start, columns })
+    }
+}
+
+impl Checker {
+    /// Answers a query about every row, block by block.
+    fn answer(
+        &self,
+        q: &Bound<'_, PyAny>,
+        kind: QueryKind,
+        mut take: impl FnMut(&QueryRow) + Send,
+    ) -> Result<usize, Fault> {
+        let (py, model) = (q.py(), &*self.model);
+        let rows = Rows::of(q, "q", &model.columns)?;
+        let query = Query {
+            kind,
+            options: self.options,
+            is_timed: false,
+            pairs: &self.pairs,
+            all_pairs_m: None,
+            start: &model.start,
+        };
+        for begin in (0..rows.len()).step_by(CHUNK) {
+            let states = QueryStates::of_rows(&model.query, rows.chunk(begin)?);
+            let mut interrupted = None;
+            py.detach(|| {
+                query::evaluate_query(&model.scene, &states, &query, &mut |rows| {
+                    rows.iter().for_each(&mut take);
+                    // The signals of a process arrive at its main thread, which may be this one.
+                    interrupted = Python::attach(signals).err();
+                    interrupted.is_none()
+                })
+            })?;
+            if let Some(error) = interrupted {
+                return Err(error.into());
+            }
+        }
+        Ok(rows.len())
+    }
+
+    fn name(&self, row: &QueryRow, side: usize) -> Option<String> {
+        let pair = row.pair.map(|(a, b)| [a, b]);
+        pair.map(|pair| self.model.query.geometry_name(pair[side]))
+    }
+}
+
+/// Whether a signal, such as that of Ctrl-C, has become an exception.
+fn signals(py: Python<'_>) -> PyResult<()> {
+    py.check_signals()
+}
+
+/// The distance of a row, m; infinite if the model has no pair.
+fn metres(row: &QueryRow) -> f64 {
+    row.distance_m.unwrap_or(f64::INFINITY)
+}
+
+#[pymethods]
+impl Checker {
+    #[new]
+    #[pyo3(signature = (source, *, level="auto", between=None))]
+    fn new(source: Bound<'_, PyAny>, level: &str, between: Option<String>) -> PyResult<Self> {
+        let py = source.py();
+        let parsed: Level = level.parse().map_err(|e| Fault::Argument(format!("`level`: {e}")))?;
+        let (mut query, cell) = if let Ok(robot) = source.cast::<Robot>() {
+            let robot = robot.get();
+            (QueryModel::of_robot(robot.path(), (*robot.model).clone()), None)
+        } else if let Ok(cell) = source.cast::<Cell>() {
+            let cell = cell.get().model.clone();
+            (QueryModel::of_cell(&cell), Some(cell))
+        } else {
+            let class = source.get_type().name().map(|n| n.to_string()).unwrap_or_default();
+            let text =
+                format!("a {class} has no states to check\n  write: Checker(Robot.load(…)) or Checker(Cell.load(…))");
+            return Err(Fault::Argument(text).into());
+        };
+        let pairs = match &between {
+            None => QueryPairs::all(),
+            Some(text) => QueryPairs::between(text, &mut query, cell.as_deref())
+                .map_err(|e| Fault::Argument(format!("`between`: {e}")))?,
+        };
+        let model = py.detach(|| Model::new(query))?;
+        let options = CheckerOptions { level: parsed, ..CheckerOptions::default() };
+        Ok(Self { model: Arc::new(model), source: source.unbind(), level: level.to_owned(), between, options, pairs })
+    }
+
+    /// The names of the columns of states: `joint` for a robot, `robot.joint` for a cell, side by side.
+    #[getter]
+    fn joints(&self) -> Vec<String> {
+        self.model.columns.clone()
+    }
+
+    /// The joint values at the start, `(dof,)`.
+    #[getter]
+    fn start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let start = self.model.query.robots.iter().flat_map(|robot| robot.start.iter().copied());
+        PyArray1::from_vec(py, start.collect())
+    }
+
+    /// Find the states in which something collides.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     `(N, dof)` joint values in the order of `joints`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray
+    ///     `(N,)` bool.
+    fn collides<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        let mut out = Vec::new();
+        self.answer(q, QueryKind::Collision, |row| out.push(row.collides))?;
+        Ok(PyArray1::from_vec(q.py(), out))
+    }
+
+    /// Compute the least distance between any two parts that could meet.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     `(N, dof)` joint values in the order of `joints`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray
+    ///     `(N,)`, metres: 0 on contact, infinite if there is no pair.
+    fn distance<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mut out = Vec::new();
+        self.answer(q, QueryKind::Distance, |row| out.push(metres(row)))?;
+        Ok(PyArray1::from_vec(q.py(), out))
+    }
+
+    /// Find the states in which the least distance is at most a tolerance.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     `(N, dof)` joint values in the order of `joints`.
+    /// tolerance_m
+    ///     The tolerance, metres.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray
+    ///     `(N,)` bool.
+    fn within<'py>(&self, q: &Bound<'py, PyAny>, tolerance_m: f64) -> PyResult<Bound<'py, PyArray1<bool>>> {
+        // Written so that NaN fails.
+        if !(tolerance_m >= 0.0 && tolerance_m.is_finite()) {
+            let text =
+                format!("`tolerance_m` is {tolerance_m}\n  write: a finite number of metres, 0 or more, as 0.02");
+            return Err(Fault::Argument(text).into());
+        }
+        let mut out = Vec::new();
+        self.answer(q, QueryKind::Tolerance(tolerance_m), |row| out.push(row.collides))?;
+        Ok(PyArray1::from_vec(q.py(), out))
+    }
+
+    /// Find the nearest pair of every state, and its nearest points.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     `(N, dof)` joint values in the order of `joints`.
+    ///
+    /// Returns
+    /// -------
+    /// Witness
+    fn witness<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let py = q.py();
+        let (mut distances, mut points, mut names) = (Vec::new(), [Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+        let count = self.answer(q, QueryKind::Distance, |row| {
+            distances.push(metres(row));
+            let witness = row.witness.map(|(a, b)| [a.to_array(), b.to_array()]);
+            for side in 0..2 {
+                names[side].push(self.name(row, side));
+                points[side].extend(witness.map_or([f64::NAN; 3], |witness| witness[side]));
+            }
+        })?;
+        let [a, b] = names;
+        let [on_a, on_b] = points.map(|points| shaped(&PyArray1::from_vec(py, points), [count, 3]));
+        let distances = PyArray1::from_vec(py, distances);
+        py.import("elbowroom.results")?.getattr("Witness")?.call1((distances, a, b, on_a?, on_b?))
+    }
+
+    fn __repr__(&self) -> String {
+        let (joints, objects) = (self.model.columns.len(), self.model.query.objects.len());
+        format!("Checker({} robots with {joints} joints, {objects} objects)", self.model.query.robots.len())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let args = (&self.source, &self.level, &self.between);
+        py.import("elbowroom.pickles")?.getattr("reduced_checker")?.call1(args)
+    }
+}

@@ -1,0 +1,28 @@
+//! The extension module of the Python package `elbowroom`: robots, cells, checkers and plans with NumPy arrays.
+//!
+//! `python/elbowroom` has the package around it: exceptions, type stubs, documentation. Nothing is computed here: arrays
+//! become rows of joint values, the façade answers, and the answers become arrays. While the façade works, other threads of
+//! Python run; every 65,536 rows, and every block of a query, signals are looked at, so Ctrl-C ends a long call.
+//!
+//! **Invariant.** A row that is not finite, or has the wrong number of values, is an exception that names the row; no such
+//! row is ever answered.
+
+mod arrays;
+mod cell;
+mod checker;
+mod error;
+mod paths;
+mod robot;
+mod rows;
+
+use pyo3::prelude::*;
+
+/// The extension module; use the package `elbowroom`.
+#[pymodule]
+fn _elbowroom(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<robot::Robot>()?;
+    module.add_class::<cell::Cell>()?;
+    module.add_class::<checker::Checker>()?;
+    module.add_function(wrap_pyfunction!(paths::plan, module)?)
+}

@@ -1,0 +1,91 @@
+//! The package, put together from its sources and the extension module that cargo has compiled beside these tests.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use elbowroom_testkit::compiler::library_folder;
+use elbowroom_testkit::folder::workspace;
+use elbowroom_testkit::python::with_modules;
+use tempfile::TempDir;
+
+/// A folder with the package, and the interpreter.
+struct Package {
+    python: String,
+    folder: TempDir,
+}
+
+impl Package {
+    fn new() -> Option<Self> {
+        let python = with_modules("numpy, pytest, hypothesis, mypy", "numpy, pytest, hypothesis and mypy")?;
+        let folder = tempfile::tempdir().expect("a folder");
+        copy(&workspace().join("python/elbowroom"), &folder.path().join("elbowroom"));
+        let library = library_folder("_elbowroom").join("lib_elbowroom.so");
+        std::fs::copy(library, folder.path().join("elbowroom/_elbowroom.abi3.so")).expect("the extension module");
+        Some(Self { python, folder })
+    }
+
+    /// Runs a module of Python in the workspace, with the package and the command.
+    fn run(&self, words: &[&str]) {
+        let mut run = Command::new(&self.python);
+        run.arg("-m").args(words).current_dir(workspace()).env("PYTHONPATH", self.folder.path());
+        run.env("PYTHONDONTWRITEBYTECODE", "1").env("MYPYPATH", self.folder.path());
+        if let Some(command) = command() {
+            run.env("ELBOWROOM_COMMAND", command);
+        }
+        let output = run.output().expect("Python starts");
+        let text = [&output.stdout[..], &output.stderr].map(String::from_utf8_lossy).join("\n");
+        assert!(output.status.success(), "{words:?}: {}\n{text}", output.status);
+    }
+
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("the sources").flatten() {
+        let is_source =
+            entry.path().extension().is_some_and(|e| ["py", "pyi", "typed"].iter().any(|known| e == *known));
+        if is_source {
+            std::fs::copy(entry.path(), to.join(entry.file_name())).expect("a file");
+        }
+    }
+}
+
+/// The command, if it is compiled.
+fn command() -> Option<PathBuf> {
+    let command = library_folder("_elbowroom").with_file_name("elbowroom");
+    command.is_file().then_some(command)
+}
+
+#[test]
+fn the_tests_in_python_pass() {
+    let Some(package) = Package::new() else { return };
+    package.run(&["pytest", "-q", "-p", "no:cacheprovider", "python/tests"]);
+}
+
+#[test]
+fn the_examples_of_the_documentation_print_what_they_say() {
+    let Some(package) = Package::new() else { return };
+    let script = package.path().join("doctests.py");
+    std::fs::write(
+        &script,
+        "import doctest, elbowroom\n\
+         from elbowroom import poses\n\
+         parse, runner = doctest.DocTestParser().get_doctest, doctest.DocTestRunner()\n\
+         for shown in (elbowroom, elbowroom.Robot, elbowroom.Cell, elbowroom.Checker, elbowroom.plan, poses.matrix):\n    \
+             runner.run(parse(shown.__doc__, {'elbowroom': elbowroom, 'matrix': poses.matrix}, shown.__name__, None, 0))\n\
+         assert runner.tries > 12 and runner.failures == 0, (runner.tries, runner.failures)\n",
+    )
+    .expect("a script");
+    package.run(&["doctests"]);
+}
+
+#[test]
+fn types_are_strict_and_the_stubs_are_those_of_the_module() {
+    let Some(package) = Package::new() else { return };
+    let folder = package.path().join("elbowroom").display().to_string();
+    package.run(&["mypy", "--strict", "--cache-dir", "/dev/null", &folder]);
+    package.run(&["mypy.stubtest", "elbowroom._elbowroom"]);
+}

@@ -1,0 +1,29 @@
+"""Collision awareness for industrial robot cells.
+
+>>> import numpy as np, elbowroom as er
+>>> robot = er.Robot.load("arm.urdf")                      # doctest: +SKIP
+>>> er.Checker(robot).distance(np.zeros((1, robot.dof)))   # doctest: +SKIP
+
+Joint values are `(N, dof)` arrays of float64, radians for joints that turn and metres for joints that slide; a row is a
+state. Lengths are metres, times seconds. For a cell the robots stand side by side in the order of the file.
+"""
+
+from elbowroom._elbowroom import Cell, Checker, Robot, __version__, plan
+from elbowroom.errors import ArgumentError, ArrayError, Error, FileError
+from elbowroom.results import JointMap, Path, Run, Witness
+
+__all__ = [
+    "ArgumentError",
+    "ArrayError",
+    "Cell",
+    "Checker",
+    "Error",
+    "FileError",
+    "JointMap",
+    "Path",
+    "Robot",
+    "Run",
+    "Witness",
+    "__version__",
+    "plan",
+]

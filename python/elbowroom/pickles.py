@@ -1,0 +1,69 @@
+"""Pickling: a model is its files, so a pickle has their paths, and the checksum of the first one.
+
+A worker on another machine needs the same files at the same paths. If a file has changed since, unpickling fails: two
+models that differ must not be taken for one.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from elbowroom import _elbowroom
+from elbowroom.errors import FileError
+
+_Reduced = tuple[Callable[..., Any], tuple[Any, ...]]
+
+
+def checksum(path: Path) -> str:
+    """Return the SHA-256 of a file in hex."""
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
+def _same(path: Path, expected: str) -> None:
+    try:
+        found = checksum(path)
+    except OSError as error:
+        hint = "the same file at the same path on every machine"
+        raise FileError(f"{path}: cannot be read: {error}\n  write: {hint}", str(path), None, str(error), hint) from error
+    if found != expected:
+        message = "has changed since the object was pickled"
+        hint = "load it again, and pickle the new object"
+        raise FileError(f"{path}: {message}\n  write: {hint}", str(path), None, message, hint)
+
+
+def robot(files: tuple[Any, ...], expected: str) -> _elbowroom.Robot:
+    """Load a pickled robot."""
+    path, srdf, unit, joints = files
+    _same(path, expected)
+    return _elbowroom.Robot.load(path, srdf, unit=unit, joints=joints)
+
+
+def cell(path: Path, expected: str) -> _elbowroom.Cell:
+    """Load a pickled cell."""
+    _same(path, expected)
+    return _elbowroom.Cell.load(path)
+
+
+def checker(source: Any, level: str, between: str | None) -> _elbowroom.Checker:
+    """Make a pickled checker."""
+    return _elbowroom.Checker(source, level=level, between=between)
+
+
+def reduced_robot(files: tuple[Any, ...]) -> _Reduced:
+    """Return what a pickle of a robot has."""
+    files = tuple(Path(file).resolve() if isinstance(file, Path) else file for file in files)
+    return robot, (files, checksum(files[0]))
+
+
+def reduced_cell(path: Path) -> _Reduced:
+    """Return what a pickle of a cell has."""
+    path = Path(path).resolve()
+    return cell, (path, checksum(path))
+
+
+def reduced_checker(source: Any, level: str, between: str | None) -> _Reduced:
+    """Return what a pickle of a checker has."""
+    return checker, (source, level, between)

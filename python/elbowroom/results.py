@@ -1,0 +1,138 @@
+"""Results: small constant objects; the units are in the names."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["JointMap", "Path", "Run", "Witness"]
+
+
+@dataclass(frozen=True, eq=False)
+class Witness:
+    """The nearest pair of every state, and its nearest points.
+
+    Attributes
+    ----------
+    distance_m
+        `(N,)`: the distance; 0 on contact; infinite if there is no pair.
+    a, b
+        The names of the pair, `robot/link` or an object; `None` without a pair.
+    point_a_m, point_b_m
+        `(N, 3)`: the nearest points in the world; NaN where they are not known.
+    """
+
+    distance_m: npt.NDArray[np.float64]
+    a: list[str | None]
+    b: list[str | None]
+    point_a_m: npt.NDArray[np.float64]
+    point_b_m: npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """A planned path, and its motion over time.
+
+    Attributes
+    ----------
+    found
+        Whether there is a path; all arrays are empty without one.
+    reason
+        Why there is none.
+    robot, joints
+        The robot and the names of its joints, in the order of the values.
+    waypoints
+        `(K, dof)`, rad or m: corners of the path, straight in joint space between them.
+    times_s
+        `(N,)`: the time of each row of `q`.
+    q
+        `(N, dof)`, rad or m: linear between the rows.
+    cost_rad
+        Length in joint space, a metre counting as a radian; `None` without a path.
+    planning_us
+        Time of the search and of shortening, in microseconds.
+    """
+
+    found: bool
+    reason: str | None
+    robot: str
+    joints: list[str]
+    waypoints: npt.NDArray[np.float64]
+    times_s: npt.NDArray[np.float64]
+    q: npt.NDArray[np.float64]
+    cost_rad: float | None
+    planning_us: int
+
+    def __bool__(self) -> bool:
+        return self.found
+
+    @property
+    def duration_s(self) -> float:
+        """Duration of the motion."""
+        return float(self.times_s[-1]) if len(self.times_s) else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A simulated run of the programs of a cell.
+
+    Attributes
+    ----------
+    summary
+        The document of `elbowroom run --json`.
+    has_violation
+        Whether a robot collided, entered a forbidden region or was in a deadlock.
+    notes
+        Warnings.
+    """
+
+    summary: dict[str, Any]
+    has_violation: bool
+    notes: list[str]
+
+
+@dataclass(frozen=True, eq=False)
+class JointMap:
+    """Blocked cells of joint space.
+
+    Attributes
+    ----------
+    robot, joints
+        The robot and the joints of the axes.
+    centers
+        Per axis the joint values of the centres of its cells, rad or m.
+    blocked_by
+        Number of cells that each object blocks.
+    """
+
+    robot: str
+    joints: list[str]
+    centers: list[npt.NDArray[np.float64]]
+    blocked_by: dict[str, int]
+    _cells: npt.NDArray[np.bool_]
+
+    @classmethod
+    def _of(
+        cls,
+        robot: str,
+        joints: list[str],
+        centers: list[npt.NDArray[np.float64]],
+        cells: npt.NDArray[np.uint8],
+        shape: list[int],
+        blocked_by: list[tuple[str, int]],
+    ) -> JointMap:
+        blocked = cells.reshape(shape).view(np.bool_)
+        blocked.flags.writeable = False
+        return cls(robot, joints, centers, dict(blocked_by), blocked)
+
+    def to_numpy(self) -> npt.NDArray[np.bool_]:
+        """Return the cells, true where the robot may touch an object; the axes are those of `joints`."""
+        return self._cells
+
+    @property
+    def blocked(self) -> int:
+        """Number of blocked cells."""
+        return int(self._cells.sum())

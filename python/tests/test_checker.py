@@ -1,0 +1,189 @@
+"""Collisions and distances: the rows of the command, and what is no array of states."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import elbowroom as er
+from conftest import ROOT
+
+RX60B = ROOT / "examples/models/rx60b/rx60b.urdf"
+ROBOT = er.Robot.load(RX60B)
+CHECKER = er.Checker(ROBOT)
+
+
+def states(columns: int, count: int, seed: int = 1) -> np.ndarray:
+    return np.random.default_rng(seed).uniform(-2.5, 2.5, (count, columns))
+
+
+def rows_of(command: Path, args: list[str], checker: er.Checker, q: np.ndarray, folder: Path) -> list[list[str]]:
+    """The rows that the command prints for the same states."""
+    table = folder / "q.csv"
+    lines = [",".join(checker.joints)] + [",".join(repr(float(v)) for v in row) for row in q]
+    table.write_text("\n".join(lines))
+    run = subprocess.run([command, "query", *args, "--states", table], capture_output=True, text=True)
+    assert run.returncode in (0, 1), run.stderr
+    return [line.split(",") for line in run.stdout.splitlines()[1:]]
+
+
+@pytest.mark.parametrize("cell", [False, True])
+def test_the_answers_are_those_of_the_command_to_the_bit(
+    command: Path, exchange: Path, tmp_path: Path, cell: bool
+) -> None:
+    checker = er.Checker(er.Cell.load(exchange)) if cell else CHECKER
+    model = [str(exchange)] if cell else ["--urdf", str(RX60B)]
+    q = states(len(checker.joints), 600 if cell else 3000)
+    found = checker.witness(q)
+    rows = rows_of(command, [*model, "--ask", "distance"], checker, q, tmp_path)
+    assert len(rows) == len(q)
+    for i, row in enumerate(rows):
+        _, collides, distance, a, b, *numbers = row
+        assert (float(distance), a, b) == (found.distance_m[i], found.a[i], found.b[i])
+        assert (collides == "1") == (found.distance_m[i] == 0.0)
+        assert [float(v) for v in numbers[:6]] == [*found.point_a_m[i], *found.point_b_m[i]]
+    assert (checker.distance(q) == found.distance_m).all()
+    rows = rows_of(command, [*model, "--ask", "collision"], checker, q, tmp_path)
+    assert [row[1] == "1" for row in rows] == checker.collides(q).tolist()
+    rows = rows_of(command, [*model, "--ask", "tolerance=0.05"], checker, q, tmp_path)
+    assert [row[1] == "1" for row in rows] == checker.within(q, 0.05).tolist()
+
+
+@given(st.integers(0, 2**32), st.floats(0.0, 0.5))
+@settings(max_examples=40, deadline=None)
+def test_collision_distance_and_tolerance_agree(seed: int, tolerance: float) -> None:
+    q = states(6, 20, seed)
+    distance = CHECKER.distance(q)
+    assert (distance >= 0.0).all()
+    assert ((distance == 0.0) == CHECKER.collides(q)).all()
+    assert ((distance <= tolerance) == CHECKER.within(q, tolerance)).all()
+    found = CHECKER.witness(q)
+    apart = np.linalg.norm(found.point_a_m - found.point_b_m, axis=1)
+    assert np.abs(apart - found.distance_m)[found.distance_m > 0].max(initial=0.0) < 1e-9
+
+
+def test_strides_and_read_only_arrays_do_not_matter() -> None:
+    q = states(6, 400)
+    expected = CHECKER.distance(q)
+    wide = np.zeros((400, 12))
+    wide[:, ::2] = q
+    read_only = q.copy()
+    read_only.flags.writeable = False
+    for same in (np.asfortranarray(q), wide[:, ::2], read_only, q[::-1][::-1]):
+        assert (CHECKER.distance(same) == expected).all()
+    assert (CHECKER.distance(q[::3]) == expected[::3]).all()
+    assert CHECKER.distance(q[:0]).shape == (0,)
+
+
+@pytest.mark.parametrize(
+    ("q", "text"),
+    [
+        (np.zeros(6), r"shape \(6,\)"),
+        (np.zeros((2, 5)), r"shape \(2, 5\)"),
+        (np.zeros((1, 2, 6)), r"shape \(1, 2, 6\)"),
+        (np.zeros((2, 6), dtype=np.float32), r"write: q.astype\(numpy.float64\)"),
+        (np.zeros((2, 6), dtype=">f8"), "type >f8"),
+        (np.zeros((2, 6), dtype=object), "type object"),
+        ([[0.0] * 6], "no NumPy array"),
+        (None, "no NumPy array"),
+        (np.array([[0.0] * 6, [0.0, 0.0, np.nan, 0.0, 0.0, 0.0]]), "row 1, column 2 is NaN"),
+        (np.array([[0.0] * 6, [0.0, 0.0, 0.0, 0.0, 0.0, -np.inf]]), "row 1, column 5 is -inf"),
+    ],
+)
+def test_what_is_no_array_of_states_is_refused(q: Any, text: str) -> None:
+    for call in (CHECKER.collides, CHECKER.distance, CHECKER.witness, ROBOT.fk):
+        with pytest.raises(er.ArrayError, match=text):
+            call(q)
+    assert issubclass(er.ArrayError, ValueError) and issubclass(er.ArrayError, er.Error)
+
+
+def test_a_row_beyond_the_first_chunk_is_named() -> None:
+    q = np.zeros((70_000, 6))
+    q[66_001, 4] = np.nan
+    with pytest.raises(er.ArrayError, match="row 66001, column 4"):
+        ROBOT.fk(q)
+
+
+def test_words_and_numbers_that_are_not_possible_teach(exchange: Path) -> None:
+    for tolerance in (-1.0, np.nan, np.inf):
+        with pytest.raises(er.ArgumentError, match="finite number of metres"):
+            CHECKER.within(np.zeros((1, 6)), tolerance)
+    with pytest.raises(er.ArgumentError, match="`level`"):
+        er.Checker(ROBOT, level="fine")
+    with pytest.raises(er.ArgumentError, match="`between`"):
+        er.Checker(er.Cell.load(exchange), between="left,nobody")
+    with pytest.raises(er.ArgumentError, match=r"write: Checker\(Robot.load"):
+        er.Checker("arm.urdf")  # type: ignore[arg-type]
+
+
+def test_levels_and_pairs_are_chosen(exchange: Path) -> None:
+    q = states(6, 200)
+    exact = CHECKER.distance(q)
+    for level in ("L1", "L2", "L2:4", "capsule", "hull"):
+        assert (er.Checker(ROBOT, level=level).distance(q) <= exact + 1e-9).all(), level
+    cell = er.Cell.load(exchange)
+    between = er.Checker(cell, between="left,right")
+    q = states(len(between.joints), 40)
+    assert (between.distance(q) >= er.Checker(cell).distance(q)).all()
+    assert (between.distance(q) > er.Checker(cell).distance(q)).any()
+
+
+def test_a_pickle_answers_alike(exchange: Path) -> None:
+    checker = er.Checker(er.Cell.load(exchange), between="left,right", level="L2")
+    again = pickle.loads(pickle.dumps(checker))
+    q = states(len(checker.joints), 50)
+    assert (checker.distance(q) == again.distance(q)).all()
+
+
+def test_other_threads_run_meanwhile() -> None:
+    q = states(6, 40_000)
+    ticks = 0
+    done = threading.Event()
+
+    def count() -> None:
+        nonlocal ticks
+        while not done.is_set():
+            ticks += 1
+            time.sleep(1e-3)
+
+    counter = threading.Thread(target=count)
+    counter.start()
+    started = time.perf_counter()
+    CHECKER.distance(q)
+    took = time.perf_counter() - started
+    done.set()
+    counter.join()
+    assert ticks > 0.05 * took / 1e-3, (ticks, took)
+
+
+def test_ctrl_c_ends_a_long_call() -> None:
+    script = (
+        "import numpy as np, elbowroom as er, signal, time\n"
+        f"checker = er.Checker(er.Robot.load({str(RX60B)!r}))\n"
+        "q = np.random.default_rng(1).uniform(-2.5, 2.5, (1_000_000, 6))\n"
+        # A process that is started in the background ignores the signal.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "print('go', flush=True)\n"
+        "try:\n    checker.distance(q)\n    print('done')\n"
+        "except KeyboardInterrupt:\n    print(time.time(), flush=True)\n"
+    )
+    child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=os.environ)
+    assert child.stdout is not None and child.stdout.readline() == "go\n"
+    time.sleep(0.3)
+    sent = time.time()
+    child.send_signal(signal.SIGINT)
+    ended = float(child.stdout.readline())
+    assert child.wait() == 0
+    assert ended - sent < 1.0, ended - sent
