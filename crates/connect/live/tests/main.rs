@@ -7,6 +7,7 @@ mod control;
 mod doubtful_input;
 mod followed;
 mod node;
+mod overshoot;
 mod region_changes;
 mod region_table;
 mod restarts;

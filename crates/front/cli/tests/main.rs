@@ -29,6 +29,7 @@ mod plan_several;
 mod planned_moves;
 mod query;
 mod query_contacts;
+mod query_limits;
 mod query_pairs;
 mod recordings;
 mod region_export;

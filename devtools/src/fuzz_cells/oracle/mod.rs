@@ -22,6 +22,7 @@ mod physics;
 mod place;
 mod presence;
 mod promises;
+pub mod readings;
 mod simplex;
 mod solid;
 mod sweep;

@@ -16,6 +16,8 @@ pub struct RobotSpec {
     pub stop_time: f64,
     /// Acceleration of all joints, for models without their own.
     pub acceleration: Option<f64>,
+    /// Tolerated overshoot of the joint limits, if it is stated.
+    pub overshoot: Option<f64>,
     pub program: ProgramSpec,
     /// Names of the objects that it evades; empty for a robot without avoidance.
     pub evades: Vec<String>,
@@ -125,6 +127,9 @@ impl RobotSpec {
         let _ = writeln!(t, "stop_time = {}\nvolumes = \"{}\"", self.stop_time, self.volumes);
         if let Some(a) = self.acceleration {
             let _ = writeln!(t, "acceleration = {a}");
+        }
+        if let Some(overshoot) = self.overshoot {
+            let _ = writeln!(t, "overshoot = {overshoot}");
         }
         self.hand.write(t, index);
         t.push('\n');

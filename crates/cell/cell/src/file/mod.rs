@@ -15,6 +15,7 @@ mod goal;
 mod grid;
 mod guarding;
 mod guide;
+mod joint_limits;
 mod models;
 mod object;
 mod operator;

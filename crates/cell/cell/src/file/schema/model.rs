@@ -50,6 +50,7 @@ pub(in crate::file) const ROBOT: &[Key] = &[
     key("speed", "number or one per joint", "the model's; else 180 deg/s, 1 m/s, with a warning", "highest joint speed"),
     key("acceleration", "number or one per joint", "the model's; else full speed in 0.25 s, typical of industrial arms", "of programmed moves"),
     key("jerk", "number or one per joint", "full acceleration in 0.1 s", "of programmed moves"),
+    key("overshoot", "number or one per joint", "0.05 rad, 0.05 m", "how far a reading may be beyond the joint limits before the [monitor](laws.md#9-watchdog) stops the robot; 0 for not at all"),
     key("stop_time", "seconds", "0.1: a hard but category-1 stop", "time from full speed to rest when the override falls"),
 ];
 
