@@ -47,6 +47,7 @@ struct FailingCells {
     wrong_cells: usize,
     off_entry: usize,
     misread: usize,
+    slowed_mechanisms: usize,
     any: usize,
 }
 
@@ -70,6 +71,7 @@ impl FailingCells {
         self.wrong_cells += has(|f| matches!(f, Finding::WrongCell { .. }));
         self.off_entry += has(|f| matches!(f, Finding::OffEntry { .. }));
         self.misread += has(|f| matches!(f, Finding::MisreadLimits { .. }));
+        self.slowed_mechanisms += has(|f| matches!(f, Finding::Slowed { .. }));
         self.any += usize::from(!findings.is_empty());
     }
 }
@@ -106,7 +108,7 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell, {} off their entry, {} with misread limits",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell, {} off their entry, {} with misread limits, {} with slowed mechanisms",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
@@ -121,11 +123,12 @@ impl Summary {
             self.failing.tilted,
             self.failing.wrong_cells,
             self.failing.off_entry,
-            self.failing.misread
+            self.failing.misread,
+            self.failing.slowed_mechanisms
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 22] {
+    fn rows(&self) -> [(&'static str, String); 23] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -148,6 +151,7 @@ impl Summary {
             ("wrong_cells", self.failing.wrong_cells.to_string()),
             ("off their entry", self.failing.off_entry.to_string()),
             ("misread limits", self.failing.misread.to_string()),
+            ("slowed mechanisms", self.failing.slowed_mechanisms.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
@@ -270,6 +274,7 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
 fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
     let robot = |r: &usize| cell.robots[*r].name.as_str();
     match finding {
+        Finding::Slowed { robot: r, t_s } => format!("mechanism {} was slowed down at {t_s:.4} s", robot(r)),
         Finding::MisreadLimits { robot: r, joint, t_s, stopped } => format!(
             "robot {}: a reading of joint {joint} {} at {t_s:.4} s",
             robot(r),

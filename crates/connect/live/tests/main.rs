@@ -6,6 +6,7 @@ mod common;
 mod control;
 mod doubtful_input;
 mod followed;
+mod mechanisms;
 mod node;
 mod overshoot;
 mod region_changes;

@@ -15,6 +15,7 @@ mod live;
 mod live_control;
 mod live_ros2;
 mod map;
+mod mechanisms;
 mod messages;
 mod models;
 mod operators;

@@ -124,5 +124,6 @@ fn carriage(random: &mut Random, centers: &[Vector]) -> RobotSpec {
         overshoot: None,
         program: ProgramSpec::of_steps(100.0, steps),
         evades: Vec::new(),
+        is_mechanism: false,
     }
 }

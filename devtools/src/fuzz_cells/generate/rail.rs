@@ -65,5 +65,6 @@ fn one_joint(row: DhRow, start: f64, steps: Vec<StepSpec>, random: &mut Random) 
         overshoot: None,
         program: ProgramSpec::of_steps(100.0, steps),
         evades: Vec::new(),
+        is_mechanism: false,
     }
 }

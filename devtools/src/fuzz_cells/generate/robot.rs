@@ -68,6 +68,7 @@ fn bare(model: Model, start: Vec<f64>, random: &mut Random) -> RobotSpec {
             Vec::new(),
         ),
         evades: Vec::new(),
+        is_mechanism: false,
     }
 }
 

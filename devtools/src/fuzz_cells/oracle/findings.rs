@@ -32,6 +32,8 @@ pub enum Finding {
     WrongCell { robot: usize, t_s: f64, number: u64 },
     /// A reading beyond the limits of a joint did not stop its robot, or (`stopped`) one within them did.
     MisreadLimits { robot: usize, joint: usize, t_s: f64, stopped: bool },
+    /// A mechanism was slowed down, or a region concerns it.
+    Slowed { robot: usize, t_s: f64 },
     /// A joint was faster than it can, by this share of its speed.
     TooFast { robot: usize, t_s: f64, share: f64 },
     /// A joint decelerated harder than it can.

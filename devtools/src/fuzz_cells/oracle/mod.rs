@@ -16,6 +16,7 @@ mod grids;
 mod guarded;
 mod guided;
 mod kept_axes;
+mod mechanisms;
 mod motion;
 mod mounted;
 mod physics;
@@ -63,6 +64,7 @@ pub fn check(
     cooperating::check(cell, recording, &arms, &mut findings);
     kept_axes::check(cell, recording, &arms, &mut findings);
     grids::check(cell, recording, &arms, &mut findings);
+    mechanisms::check(cell, recording, &mut findings);
     Ok(findings)
 }
 

@@ -21,6 +21,7 @@ pub struct RobotSpec {
     pub program: ProgramSpec,
     /// Names of the objects that it evades; empty for a robot without avoidance.
     pub evades: Vec<String>,
+    pub is_mechanism: bool,
 }
 
 /// Parts at the flange: one tool and a load, or several tools.
@@ -123,6 +124,10 @@ impl RobotSpec {
         // A recording begins at its first row.
         if self.program.recording.is_none() {
             let _ = writeln!(t, "start = {}", list(&self.start));
+        }
+        if self.is_mechanism {
+            t.push_str("kind = \"mechanism\"\n\n");
+            return;
         }
         let _ = writeln!(t, "stop_time = {}\nvolumes = \"{}\"", self.stop_time, self.volumes);
         if let Some(a) = self.acceleration {

@@ -4,24 +4,24 @@ use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_kinematics::dh::ClassicalRow;
 use elbowroom_kinematics::{Chain, JointKind, Limits};
-use elbowroom_monitor::VolumeModel;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
 use super::schema::{self, names};
-use super::{flange, joint_limits, models, tools};
+use super::{flange, joint_limits, mechanism, models, tools};
 use crate::{CellRobot, Payload, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
 pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Diagnostic>) -> Result<CellRobot> {
     t.only(&names(&[schema::ROBOT]))?;
+    let volumes = mechanism::volumes(name, t)?;
     let mut robot = model(t, units, warnings)?;
     if let Some(v) = t.get("ignore") {
         ignore(&v, &mut robot)?;
     }
-    let mut flange = flange::read(name, t, &robot.chain, warnings)?;
+    let mut flange = if volumes.is_some() { flange::read(name, t, &robot.chain, warnings)? } else { robot.chain.tip() };
     let base_in_world = t.get("base").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
     let (mut tcp_in_flange, tool) =
         t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v.table(TOOL)?, units))?;
@@ -45,7 +45,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<D
         start,
         start_given: t.get("start").is_some(),
         states,
-        volumes: t.get("volumes").map_or(Ok(VolumeModel::default()), |v| volume_model(&v))?,
+        volumes,
         limits,
         program: None,
         avoidance: None,
@@ -245,16 +245,6 @@ fn states(t: &Table<'_>, chain: &Chain, start: &[f64], units: Units) -> Result<V
         }
     }
     Ok(states)
-}
-
-fn volume_model(v: &Value<'_>) -> Result<VolumeModel> {
-    v.word(&[
-        ("auto", VolumeModel::Tightest),
-        ("capsule", VolumeModel::Capsule),
-        ("box", VolumeModel::Box),
-        ("hull", VolumeModel::Hull),
-        ("mesh", VolumeModel::Exact),
-    ])
 }
 
 /// Joint values in the file's units, checked against the number of joints and their limits.

@@ -32,6 +32,7 @@ pub(in crate::file) const SOLIDS: &[Variant] = &[
 #[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const ROBOT: &[Key] = &[
     key("model", "path", "`model` or `dh` required", "a URDF, or a 3DS, GLB, glTF or VRML model: [models](models.md)"),
+    key("kind", "`\"robot\"` `\"mechanism\"`", "`\"robot\"`", "a [mechanism](#mechanisms) moves and is an obstacle; no monitor guards it"),
     key("srdf", "path", "none", "a file whose disabled pairs are never tested for collision; with `dh` the links are `link_1`, `link_2`, …"),
     key("ignore", "pairs of links", "none", "pairs never tested for collision: `[[\"link_4\", \"link_6\"]]`, for links that always touch"),
     key("joints", "path", "`MODEL.joints.toml` beside it, if it exists", "which nodes of a 3DS, glTF or VRML model move"),
