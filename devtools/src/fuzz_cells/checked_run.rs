@@ -18,12 +18,14 @@ pub struct CheckedRun {
 }
 
 /// Runs a cell with these faults of its input; `repeat` is the number of passes, as in `run --repeat`.
-pub fn run(cell: &Cell, faults: Vec<InputFault>, repeat: u32) -> Result<CheckedRun, String> {
-    let options = RunOptions { faults, repeat: repeat.max(1), ..RunOptions::default() };
+pub fn run(cell: &Cell, faults: &[InputFault], repeat: u32) -> Result<CheckedRun, String> {
+    let options = RunOptions { faults: faults.to_vec(), repeat: repeat.max(1), ..RunOptions::default() };
     let outcome = simulate(cell, &options).map_err(|e| e.to_string())?;
     let robots = &outcome.recording.robots;
+    let mut findings = oracle::check(cell, &outcome.recording, &Promises::new(cell), outcome.has_violation())?;
+    oracle::readings::check(cell, &outcome.recording, faults, &mut findings);
     Ok(CheckedRun {
-        findings: oracle::check(cell, &outcome.recording, &Promises::new(cell), outcome.has_violation())?,
+        findings,
         finished: robots.iter().filter(|r| r.finished).count(),
         slowed: robots.iter().filter(|r| r.min_override < 0.2).count(),
         stopped: robots.iter().filter(|r| r.stopped_s > 0.0).count(),
@@ -34,5 +36,5 @@ pub fn run(cell: &Cell, faults: Vec<InputFault>, repeat: u32) -> Result<CheckedR
 
 /// Like [`run`], for a cell that is not written to a file yet.
 pub fn run_spec(spec: &CellSpec, places: &Places<'_>) -> Result<CheckedRun, String> {
-    run(&spec.parse(places.cells)?, spec.faults.clone(), spec.repeat)
+    run(&spec.parse(places.cells)?, &spec.faults, spec.repeat)
 }

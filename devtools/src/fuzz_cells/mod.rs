@@ -136,7 +136,7 @@ fn replay(file: &Path) -> Result<(), Failure> {
     let cell = Cell::parse(file, &text).map_err(|e| e.to_string())?;
     let repeat = spec::read_repeat(&text)?;
     let findings =
-        checked_run::run(&cell, faults, repeat).map_err(|e| format!("{}: {e}", file.display()))?.findings.list;
+        checked_run::run(&cell, &faults, repeat).map_err(|e| format!("{}: {e}", file.display()))?.findings.list;
     for finding in &findings {
         println!("{}", summary::in_words(finding, &cell));
     }

@@ -46,6 +46,8 @@ struct FailingCells {
     tilted: usize,
     wrong_cells: usize,
     off_entry: usize,
+    misread: usize,
+    slowed_mechanisms: usize,
     any: usize,
 }
 
@@ -68,6 +70,8 @@ impl FailingCells {
         self.tilted += has(|f| matches!(f, Finding::Tilted { .. }));
         self.wrong_cells += has(|f| matches!(f, Finding::WrongCell { .. }));
         self.off_entry += has(|f| matches!(f, Finding::OffEntry { .. }));
+        self.misread += has(|f| matches!(f, Finding::MisreadLimits { .. }));
+        self.slowed_mechanisms += has(|f| matches!(f, Finding::Slowed { .. }));
         self.any += usize::from(!findings.is_empty());
     }
 }
@@ -104,7 +108,7 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell, {} off their entry",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell, {} off their entry, {} with misread limits, {} with slowed mechanisms",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
@@ -118,11 +122,13 @@ impl Summary {
             self.failing.cooperating,
             self.failing.tilted,
             self.failing.wrong_cells,
-            self.failing.off_entry
+            self.failing.off_entry,
+            self.failing.misread,
+            self.failing.slowed_mechanisms
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 21] {
+    fn rows(&self) -> [(&'static str, String); 23] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -144,6 +150,8 @@ impl Summary {
             ("tilted", self.failing.tilted.to_string()),
             ("wrong_cells", self.failing.wrong_cells.to_string()),
             ("off their entry", self.failing.off_entry.to_string()),
+            ("misread limits", self.failing.misread.to_string()),
+            ("slowed mechanisms", self.failing.slowed_mechanisms.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
@@ -258,9 +266,24 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
         Finding::WrongCell { robot: r, t_s, number } => {
             format!("robot {} was not in cell {number} of its grid at {t_s:.4} s", robot(r))
         }
+        of_joints => joints_in_words(of_joints, cell),
+    }
+}
+
+/// Formats a finding on the joints of one robot as a sentence.
+fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
+    let robot = |r: &usize| cell.robots[*r].name.as_str();
+    match finding {
+        Finding::Slowed { robot: r, t_s } => format!("mechanism {} was slowed down at {t_s:.4} s", robot(r)),
+        Finding::MisreadLimits { robot: r, joint, t_s, stopped } => format!(
+            "robot {}: a reading of joint {joint} {} at {t_s:.4} s",
+            robot(r),
+            if *stopped { "within its limits was reported as beyond" } else { "beyond its limits did not stop it" }
+        ),
         Finding::TooHard { robot: r, joint, t_s, deceleration, limit } => format!(
             "robot {}: joint {joint} slowed down with {deceleration:.3} at {t_s:.4} s, its limit is {limit:.3} (rad/s² or m/s²)",
             robot(r)
         ),
+        other => format!("{other:?}"),
     }
 }

@@ -23,7 +23,7 @@ fn of_fault(fault: Fault) -> (usize, Option<usize>) {
         Fault::NotFinite => (12, None),
         Fault::WrongLength => (13, None),
         Fault::ProgrammedOverride => (14, None),
-        Fault::BeyondLimits { joint } => (15, Some(joint)),
+        Fault::BeyondLimits { joint, .. } => (15, Some(joint)),
         Fault::TooFast { joint } => (16, Some(joint)),
         Fault::NoVelocity => (17, None),
         Fault::Frozen => (18, None),

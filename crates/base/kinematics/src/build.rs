@@ -87,6 +87,9 @@ fn check_joint(joint: &mut Joint, links: usize) -> Result<(), ChainError> {
     if !(lower <= upper && lower < f64::INFINITY && upper > f64::NEG_INFINITY) {
         return Err(ChainError::BadLimits { joint: joint.name.clone(), lower, upper });
     }
+    if let Some(tolerance) = joint.limits.overshoot_tolerance.filter(|t| !(t.is_finite() && *t >= 0.0)) {
+        return Err(ChainError::BadOvershoot { joint: joint.name.clone(), tolerance });
+    }
     match joint.mimic {
         Some(m) if !(m.multiplier.is_finite() && m.offset.is_finite()) => {
             Err(ChainError::BadMimic { joint: joint.name.clone(), multiplier: m.multiplier, offset: m.offset })

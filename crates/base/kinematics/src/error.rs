@@ -94,6 +94,14 @@ pub enum ChainError {
         /// The given upper bound, rad or m.
         upper: f64,
     },
+    /// The tolerated overshoot is negative, infinite or NaN.
+    #[error("joint `{joint}` may overshoot its limits by {tolerance}; write a finite number, 0 or more")]
+    BadOvershoot {
+        /// The joint.
+        joint: String,
+        /// The given tolerance, rad or m.
+        tolerance: f64,
+    },
     /// A mimic joint follows an unknown joint.
     #[error("joint `{joint}` mimics joint {source_joint}, which does not exist; name a joint of this chain")]
     UnknownMimic {

@@ -10,6 +10,12 @@ pub struct LinkId(pub usize);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct JointId(pub usize);
 
+/// Rounding of joint values, rad or m: recordings that are accepted as programs may be beyond a limit by this.
+const ROUNDING: f64 = 1e-6;
+
+/// Largest plausible overshoot of a joint that states none, rad or m: controllers overshoot by less.
+const DEFAULT_OVERSHOOT_TOLERANCE: f64 = 0.05;
+
 /// The kind of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum JointKind {
@@ -48,12 +54,21 @@ pub struct Limits {
     pub acceleration: Option<f64>,
     /// Largest torque (N·m) or force (N); `None` if unknown.
     pub effort: Option<f64>,
+    /// Largest plausible [overshoot](Self::overshoot) of a reading, rad or m; `None` if unknown. See
+    /// [`Self::tolerated_overshoot`].
+    pub overshoot_tolerance: Option<f64>,
 }
 
 impl Limits {
     /// Limits that restrict nothing.
-    pub const UNLIMITED: Self =
-        Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, velocity: None, acceleration: None, effort: None };
+    pub const UNLIMITED: Self = Self {
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        velocity: None,
+        acceleration: None,
+        effort: None,
+        overshoot_tolerance: None,
+    };
 
     /// Limits from `lower` to `upper` (rad or m); all other limits are unknown.
     pub const fn range(lower: f64, upper: f64) -> Self {
@@ -83,6 +98,17 @@ impl Limits {
             return value;
         }
         (value - self.upper).max(0.0) + (value - self.lower).min(0.0)
+    }
+
+    /// The largest overshoot (rad or m) at which a reading is plausible: as stated, or 0.05.
+    pub fn tolerated_overshoot(&self) -> f64 {
+        self.overshoot_tolerance.unwrap_or(DEFAULT_OVERSHOOT_TOLERANCE)
+    }
+
+    /// True if `value` (rad or m) is plausible as a reading: it overshoots by at most the tolerated overshoot, but for
+    /// rounding (1e-6). False for NaN.
+    pub fn is_plausible(&self, value: f64) -> bool {
+        self.contains(value, self.tolerated_overshoot() + ROUNDING)
     }
 }
 

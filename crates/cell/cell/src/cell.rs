@@ -129,7 +129,7 @@ pub struct Units {
     pub angle: AngleUnit,
 }
 
-/// A robot with its pose, payload and task.
+/// A robot with its pose, payload and task; or a mechanism.
 #[derive(Debug, Clone)]
 pub struct CellRobot {
     /// Its name in the cell.
@@ -152,8 +152,8 @@ pub struct CellRobot {
     pub start_given: bool,
     /// Named configurations, rad or m, in file order.
     pub states: Vec<(String, Vec<f64>)>,
-    /// How links become guarded volumes.
-    pub volumes: VolumeModel,
+    /// How links become guarded volumes; `None` for a [mechanism](Self::is_mechanism).
+    pub volumes: Option<VolumeModel>,
     /// Motion limits per value of `q`.
     pub limits: Vec<JointLimits>,
     /// Its program; `None` if it stays at its start.
@@ -274,7 +274,25 @@ impl MapSpec {
     }
 }
 
+impl Cell {
+    /// The robots that monitors guard: all but the mechanisms, in file order.
+    pub fn guarded_robots(&self) -> impl Iterator<Item = RobotId> {
+        guarded(&self.robots)
+    }
+}
+
+/// The robots that are not mechanisms.
+pub(crate) fn guarded(robots: &[CellRobot]) -> impl Iterator<Item = RobotId> {
+    robots.iter().enumerate().filter(|(_, r)| !r.is_mechanism()).map(|(i, _)| RobotId(i))
+}
+
 impl CellRobot {
+    /// True for a mechanism, such as a door, a gate or a positioner: it moves and is an obstacle, but no monitor guards
+    /// it, and it follows no override.
+    pub fn is_mechanism(&self) -> bool {
+        self.volumes.is_none()
+    }
+
     /// True for a prismatic joint (by its index in `q`).
     pub(crate) fn slides(&self, joint: usize) -> bool {
         let chain = &self.robot.chain;
@@ -321,33 +339,34 @@ impl CellRobot {
         (0..chain.links().len()).map(LinkId).filter(|link| moving(*link).starts_with(&of_flange)).collect()
     }
 
-    /// Guarded volumes: the TCP first, then tool and load, then the links.
+    /// Guarded volumes: the TCP first, then tool and load, then the links. A mechanism has none.
     ///
     /// For a robot with named tools: their TCPs, the tools, and the links.
     pub fn guarded_volumes(&self) -> Vec<Volume> {
+        let Some(model) = self.volumes else { return Vec::new() };
         if !self.payload.tools.is_empty() {
-            return self.volumes_of_tools();
+            return self.volumes_of_tools(model);
         }
         let mut volumes = vec![Volume::tcp(self.flange, self.tcp_in_flange.translation)];
         let parts = [("tool", Part::Tool, &self.payload.tool), ("load", Part::Load, &self.payload.load)];
         volumes.extend(parts.into_iter().filter_map(|(name, part, collider)| {
             let collider = collider.as_ref()?;
-            let (shape, in_link) = self.volumes.of_solid(&collider.shape, collider.in_link);
+            let (shape, in_link) = model.of_solid(&collider.shape, collider.in_link);
             Some(Volume { name: name.into(), part, link: self.flange, shape, in_link, presence: Presence::Always })
         }));
-        volumes.extend(arm_volumes(&self.without_payload(), self.volumes));
+        volumes.extend(arm_volumes(&self.without_payload(), model));
         if !self.encloses(&volumes[1..], &volumes[0]) {
             volumes[0].part = Part::TcpOutside;
         }
         volumes
     }
 
-    fn volumes_of_tools(&self) -> Vec<Volume> {
-        let mut links = arm_volumes(&self.robot, self.volumes);
+    fn volumes_of_tools(&self, model: VolumeModel) -> Vec<Volume> {
+        let mut links = arm_volumes(&self.robot, model);
         links.retain(|v| self.payload.tools.iter().all(|t| t.link != v.link));
         let tool = |t: &CellTool| {
             let c = t.collider.as_ref()?;
-            let (shape, in_link) = self.volumes.of_solid(&c.shape, c.in_link);
+            let (shape, in_link) = model.of_solid(&c.shape, c.in_link);
             Some(Volume {
                 name: t.name.clone(),
                 part: Part::Tool,

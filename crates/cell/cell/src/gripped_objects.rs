@@ -37,7 +37,7 @@ impl Cell {
     ///
     /// The volume is the shape of the object, or the volume that replaces its mesh, at its pose in the object's frame.
     pub fn gripped_volume(&self, robot: RobotId, object: ObjectId, link: LinkId) -> Volume {
-        let (model, o) = (self.robots[robot.0].volumes, &self.objects[object.0]);
+        let (model, o) = (self.robots[robot.0].volumes.unwrap_or_default(), &self.objects[object.0]);
         let (shape, in_link) = model.of_solid(&o.shape, Pose::IDENTITY);
         Volume { in_link, ..Volume::gripped(o.name.clone(), link, shape) }
     }

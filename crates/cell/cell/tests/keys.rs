@@ -26,6 +26,15 @@ const CAMERA: &str = "[camera.top]\nsize = [640, 480]\nfocal_px = 500\npose = { 
 const FOLLOWING: &str = "[region.ball]\nshape = \"sphere\"\ncentre = [0, 0, 500]\nradius = 100\nwarning = 50";
 const CASES: &[Case] = &[
     (
+        "robot",
+        "overshoot = 10",
+        [
+            ("overshoot = -1", "must be 0 or more, not -1", "overshoot = 0"),
+            ("overshoot = 501", "overshoot its limits by 501 mm", "at most 500 mm"),
+            ("overshoot = [10, 10]", "has 2 values for 1 joints", "a list with one per joint"),
+        ],
+    ),
+    (
         AVOIDANCE,
         "horizon = 2.5",
         [
@@ -223,4 +232,26 @@ fn a_mesh_has_the_unit_that_is_named() {
         assert!(e.message.contains(what) && e.hint.as_deref().unwrap_or("").contains(hint), "{line}: {e}");
         assert_eq!(e.line, Some(at), "{line}");
     }
+}
+
+#[test]
+fn the_overshoot_of_the_file_is_in_the_units_of_each_joint() {
+    let robot = |key: &str| {
+        let text = format!(
+            "{HEAD}[robot.r]\ndh = [{{ min = -90, max = 90, speed = 90 }}, {{ kind = \"prismatic\", min = 0, max = 500, speed = 90 }}]\n{key}\n"
+        );
+        Cell::parse("cell.toml", &text).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let tolerances = |key: &str| {
+        let chain = robot(key).robots[0].robot.chain.clone();
+        chain.active_joints().iter().map(|id| chain.joints()[id.0].limits.overshoot_tolerance).collect::<Vec<_>>()
+    };
+    assert_eq!(tolerances(""), [None, None]);
+    assert_eq!(tolerances("overshoot = 2"), [Some(2_f64.to_radians()), Some(0.002)]);
+    assert_eq!(tolerances("overshoot = [0, 12]\nspeed = [30, 40]"), [Some(0.0), Some(0.012)]);
+    // A change of the tolerance needs a new approval; a file without the key keeps its checksum.
+    let checksum = |key: &str| robot(key).approval.checksum;
+    assert_ne!(checksum("overshoot = 2"), checksum(""));
+    assert_ne!(checksum("overshoot = 2"), checksum("overshoot = 3"));
+    assert_eq!(checksum("overshoot = 2"), checksum("overshoot = [2, 2]"));
 }

@@ -11,6 +11,7 @@ mod guarded_volumes;
 mod joint_contacts;
 mod kept_inside;
 mod keys;
+mod mechanisms;
 mod planning_scene;
 mod seal;
 mod sealed_cell;

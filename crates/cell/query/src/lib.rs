@@ -45,7 +45,7 @@ pub use cover_cache::CoverCache;
 pub use elbowroom_scene::Level;
 pub use link_cells::{LinkCells, blocked_by_link};
 pub use rows::{
-    BLOCK, ContactRecord, ContactRow, MotionRecord, MotionRow, PairColumns, Query, QueryChecker, QueryEffort,
-    QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow, QueryStates, UnknownQueryKind, evaluate,
-    evaluate_contacts, evaluate_motions, evaluate_query,
+    BLOCK, ContactRecord, ContactRow, JointOvershoot, LimitRecord, LimitRow, MotionRecord, MotionRow, PairColumns,
+    Query, QueryChecker, QueryEffort, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow, QueryStates,
+    UnknownQueryKind, evaluate, evaluate_contacts, evaluate_limits, evaluate_motions, evaluate_query,
 };

@@ -5,7 +5,16 @@ use elbowroom_sim::RobotTrack;
 /// Below this speed (m/s) a TCP counts as stationary.
 pub const STATIONARY_M_S: f64 = 1e-4;
 
-/// When a robot finished. A door, a fixture or another robot without a program has nothing to finish.
+/// Until when a mechanism moved.
+pub fn moved_until(mechanism: &RobotTrack) -> String {
+    match mechanism.ending.stopped_at_s {
+        Some(t_s) if t_s > 0.0 => format!("a mechanism, moved until {t_s:.2} s"),
+        Some(_) => "a mechanism, did not move".into(),
+        None => "a mechanism, still moving at the end".into(),
+    }
+}
+
+/// When a robot finished. A robot without a program has nothing to finish.
 pub fn finished_at(robot: &RobotTrack) -> String {
     let [first, .., last] = &robot.samples[..] else { return "did not move".into() };
     if robot.samples.iter().all(|s| s.q == first.q) {

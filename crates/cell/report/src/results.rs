@@ -11,7 +11,7 @@ use elbowroom_spatial::Vec3;
 
 use crate::carried_motion::carried;
 use crate::explanation::{collision_text, reason_text};
-use crate::last_motion::finished_at;
+use crate::last_motion::{finished_at, moved_until};
 use crate::summary::{followed, millimetres};
 
 /// Fraction of the programmed override below which a robot counts as slowed down.
@@ -50,6 +50,10 @@ pub fn results(rec: &Recording) -> Vec<ResultLine> {
 
 fn of_robot(robot: &RobotTrack, rec: &Recording) -> ResultLine {
     let (grade, what) = match (robot.collisions.first(), robot.ending.outcome) {
+        (Some(hit), Outcome::Mechanism) => {
+            (Grade::Stopped, format!("is {}; {}", moved_until(robot), collision_text(hit, robot)))
+        }
+        (None, Outcome::Mechanism) => (Grade::Good, format!("is {}", moved_until(robot))),
         (Some(hit), _) => (Grade::Bad, format!("collided: {}{}", collision_text(hit, robot), after_hit(robot))),
         (None, _) if robot.finished => (Grade::Good, finished(robot, rec)),
         (None, Outcome::Deadlock) => (Grade::Bad, format!("is in a deadlock: it {}", stopped(robot, rec))),

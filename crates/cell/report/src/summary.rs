@@ -10,7 +10,7 @@ use elbowroom_sim::{
 
 use crate::carried_motion::carried;
 use crate::explanation::explanation;
-use crate::last_motion::{STATIONARY_M_S, finished_at};
+use crate::last_motion::{STATIONARY_M_S, finished_at, moved_until};
 use crate::sparkline::sparkline;
 
 /// Largest number of listed regions; the rest is counted.
@@ -176,12 +176,16 @@ fn robot_lines(robot: &RobotTrack, rec: &Recording, names: usize, width: usize) 
     let indent = " ".repeat(names + 4);
     let style = match robot.ending.outcome {
         Outcome::Collided | Outcome::Deadlock => Style::Bad,
+        Outcome::Mechanism if robot.collisions.is_empty() => Style::Plain,
         _ if !robot.collisions.is_empty() => Style::Bad,
         _ if robot.finished => Style::Good,
         _ => Style::Warn,
     };
     let mut lines = vec![vec![(format!("  {}  ", pad(&robot.name, names)), Style::Bold), (outcome(robot, rec), style)]];
     lines.extend(collision_lines(robot, &indent));
+    if robot.is_mechanism() {
+        return lines;
+    }
     let values: Vec<f64> = robot.samples.iter().map(|s| s.speed_override).collect();
     let numbers = format!("  smallest {:.1} %, stopped {:.2} s", 100.0 * robot.min_override, robot.stopped_s);
     let available = width.saturating_sub(indent.len() + "override ".len() + numbers.len());
@@ -303,6 +307,9 @@ fn sensor_line(track: &SensorTrack) -> Line {
 /// Description of the outcome of a robot's program.
 pub fn outcome(robot: &RobotTrack, rec: &Recording) -> String {
     let Some(last) = robot.samples.last() else { return "no samples".into() };
+    if robot.is_mechanism() {
+        return moved_until(robot);
+    }
     if robot.finished {
         return finished_at(robot);
     }

@@ -90,7 +90,7 @@ impl From<TickTimes> for TickNs {
 pub struct RobotSummary {
     /// Its name.
     pub name: String,
-    /// The link that carries the tool centre point.
+    /// The link that carries the tool centre point; empty for a mechanism.
     pub flange: String,
     /// True if its program was completed.
     pub finished: bool,
@@ -116,9 +116,10 @@ pub struct RobotSummary {
 /// End of the run of one robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EndingSummary {
-    /// `finished`, `stopped`, `held` (waiting for an exchange region), `collided` or `deadlock`.
+    /// `finished`, `stopped`, `held` (waiting for an exchange region), `collided`, `deadlock`, or `mechanism`.
     pub outcome: Outcome,
-    /// Time at which it stopped at its final configuration, s; null if it finished or was still moving.
+    /// Time at which it stopped at its final configuration, s; null if it finished or was still moving. For a mechanism the
+    /// end of its motion, 0 if it did not move.
     pub stopped_at_s: Option<f64>,
     /// The region or obstacle that stopped it, or what it collided with first; null if unknown.
     pub by: Option<String>,

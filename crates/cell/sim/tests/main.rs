@@ -11,6 +11,7 @@ mod following;
 mod guarded_volumes;
 mod kept_inside;
 mod law;
+mod mechanisms;
 mod moving_objects;
 mod multi_robot_avoidance;
 mod overrun;

@@ -92,6 +92,9 @@ impl PeerWatch {
                 others.push((part.key(&keys), part));
             }
         }
+        // Nobody has to read a mechanism: a region that follows it stops its robots if its joint values are missing.
+        others
+            .retain(|(_, part)| !cell.robots.iter().any(|r| r.is_mechanism() && *part == Part::Robot(r.name.clone())));
         let subscription = match on_event {
             Some(on_event) if !others.is_empty() => Some(watch(network, &keys, others, on_event)?),
             _ => None,

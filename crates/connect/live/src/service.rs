@@ -57,7 +57,12 @@ impl Service {
 
     /// Number of robots that this process guards.
     pub fn guarded(&self) -> usize {
-        self.nodes.len()
+        self.nodes.iter().filter(|node| node.is_guard()).count()
+    }
+
+    /// Number of mechanisms whose joint values this process reads and shows.
+    pub fn mechanisms(&self) -> usize {
+        self.nodes.len() - self.guarded()
     }
 
     /// Whether this process keeps the regions and grants exchange regions.

@@ -145,6 +145,8 @@ struct SimulatedController {
     reaction_s: f64,
     carried: CarriedVolumes,
     client: Arc<Mutex<ControllerClient>>,
+    /// False for a mechanism, which follows no override.
+    obeys: bool,
     joint_states: Box<dyn Publisher>,
     switches: SwitchRequests,
     velocity: Vec<f64>,
@@ -180,6 +182,7 @@ impl SimulatedController {
             reaction_s: cell.monitoring.reaction_delay_s,
             carried,
             client,
+            obeys: !at.is_mechanism(),
             joint_states: network.publisher(&keys.joint_states(&at.name), Urgency::RealTime)?,
             switches: SwitchRequests::new(cell, robot, network)?,
             velocity: Vec::new(),
@@ -192,7 +195,7 @@ impl SimulatedController {
     /// Advances by a tick under the present override, and sends the joint state to the node.
     fn tick(&mut self, nominal: Micros, clock: Clock) {
         let now = clock.micros();
-        let speed_override = locked(&self.client).speed_override(now);
+        let speed_override = if self.obeys { locked(&self.client).speed_override(now) } else { 1.0 };
         let shared = self.program.clone();
         let mut program = locked(&shared);
         let (is_held, news) = program.must_hold(clock.seconds(), self.reaction_s, self.tick_s);

@@ -153,7 +153,7 @@ impl RobotStatus {
             robot: configuration.robot().to_owned(),
             q: sample.q.clone(),
             speed_override: report.speed_override,
-            reason: report.reason.named(regions).to_string(),
+            reason: report.reason.named(configuration).to_string(),
             region: report.reason.region().map(name),
             exchange: of_region().filter_map(|(s, r)| Some((r.name.clone(), s.exchange?.name().to_owned()))).collect(),
             sequence: 0,

@@ -174,8 +174,9 @@ pub(crate) struct CheckArgs {
   elbowroom query cell.toml --ask distance --all-pairs 0.1          every pair nearer than 0.1 m
   elbowroom query cell.toml --ask time --states path.csv            the first contact of the motion between the rows
   elbowroom query cell.toml --ask contacts --pairs pairs.toml       all triangles that touch, but for what may touch
+  elbowroom query cell.toml --ask limits --states q.csv             the joint that is farthest beyond its limits
 
-Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level; those of contacts are in docs/query.md.
+Columns: index,collides,distance_m,a,b,ax,ay,az,bx,by,bz,level; the other columns are in docs/query.md.
 Exit status: 1 if --ask collision finds a collision.")]
 pub(crate) struct QueryArgs {
     /// The cell file; or --urdf
@@ -193,7 +194,8 @@ pub(crate) struct QueryArgs {
     #[arg(long, value_enum, conflicts_with = "cell")]
     pub(crate) unit: Option<Unit>,
     /// The query: collision, distance, tolerance=METRES, point (the collision point and its link), contacts (all triangles
-    /// that touch) or time (the first contact of the motion from each state to the next)
+    /// that touch), time (the first contact of the motion from each state to the next) or limits (the joint that is farthest
+    /// beyond its limits)
     #[arg(long, value_name = "WHAT")]
     pub(crate) ask: QueryKind,
     /// Joint states (a header of joint names, then a row of radians or metres per state; - is standard input);

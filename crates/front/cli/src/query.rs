@@ -5,8 +5,9 @@ use std::path::Path;
 use elbowroom::cell::{Cell, OutOfReachProofs, PairFile, QueryModel};
 use elbowroom::formats::robot::{self, LoadOptions};
 use elbowroom::query::{
-    ContactRecord, ContactRow, Level, MotionRecord, MotionRow, Query, QueryChecker, QueryEffort, QueryKind, QueryPairs,
-    QueryPairsError, QueryRecord, QueryRow, QueryStates, evaluate_contacts, evaluate_motions, evaluate_query,
+    ContactRecord, ContactRow, Level, LimitRecord, LimitRow, MotionRecord, MotionRow, Query, QueryChecker, QueryEffort,
+    QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow, QueryStates, evaluate_contacts, evaluate_limits,
+    evaluate_motions, evaluate_query,
 };
 use elbowroom::scene::{CheckerOptions, Scene, SceneState};
 use elbowroom::spatial::units::LengthUnit;
@@ -49,11 +50,12 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::Wrong(what.to_owned()));
     }
     states.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let is_worth_it = !effort.no_matrix && (states.len() >= MANY || effort.times);
+    let is_of_pairs = args.ask != QueryKind::Limits;
+    let is_worth_it = is_of_pairs && !effort.no_matrix && (states.len() >= MANY || effort.times);
     let proofs = if is_worth_it { OutOfReachProofs::Compute } else { OutOfReachProofs::Omit };
     let scene = model.scene(proofs)?;
     let start = model.start_state(&scene)?;
-    if has_no_pair(&scene, &start, &pairs) {
+    if is_of_pairs && has_no_pair(&scene, &start, &pairs) {
         note(format_args!("warning: {}: there is no pair that could meet", model.file.display()));
     }
     let mut writer = Writer::new(args, &model, states.len());
@@ -68,7 +70,7 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
     let query = Query { kind, options, is_timed, pairs: &pairs, all_pairs_m, start: &start };
     let effort = answer((&scene, &model), &states, &query, &mut writer)?;
     writer.end(effort)?;
-    Ok(if args.ask == QueryKind::Collision && writer.colliding > 0 {
+    Ok(if args.ask == QueryKind::Collision && writer.counted > 0 {
         ExitStatus::NegativeResult
     } else {
         ExitStatus::Success
@@ -92,6 +94,10 @@ fn answer(
             outcome = writer.rows(rows.iter().map(|row| WrittenRow::motion(row, model)));
             outcome.is_ok()
         })?,
+        QueryKind::Limits => evaluate_limits(model, states, &mut |rows| {
+            outcome = writer.rows(rows.iter().map(|row| WrittenRow::limits(row, model)));
+            outcome.is_ok()
+        })?,
         _ => evaluate_query(scene, states, query, &mut |rows| {
             outcome = writer.rows(rows.iter().map(|row| WrittenRow::state(row, model)));
             outcome.is_ok()
@@ -106,6 +112,9 @@ fn check_combination(args: &QueryArgs) -> Result<(), Failure> {
         return Err(Failure::Wrong("--all-pairs lists distances\n  write: --ask distance --all-pairs 0.1".to_owned()));
     }
     let effort = &args.effort;
+    if args.ask == QueryKind::Limits {
+        return check_limits(args);
+    }
     let is_exact = matches!(effort.level, Level::Auto | Level::L3);
     if !is_exact && matches!(args.ask, QueryKind::Point | QueryKind::Contacts) {
         let what = "points and contacts are those of the exact geometry\n  write: --level auto, or none";
@@ -119,6 +128,27 @@ fn check_combination(args: &QueryArgs) -> Result<(), Failure> {
         return Err(Failure::Wrong(what));
     }
     Ok(())
+}
+
+/// Refuses options about pairs in a question about joint limits.
+fn check_limits(args: &QueryArgs) -> Result<(), Failure> {
+    let effort = &args.effort;
+    let about_pairs = [
+        ("--pairs", args.pairs.is_some()),
+        ("--between", args.between.is_some()),
+        ("--no-self", args.no_self),
+        ("--carry", !args.carry.is_empty()),
+        ("--level", effort.level != Level::Auto),
+        ("--start", effort.start != Level::L1),
+        ("--no-matrix", effort.no_matrix),
+        ("--no-weights", effort.no_weights),
+        ("--times", effort.times),
+    ];
+    let Some((option, _)) = about_pairs.into_iter().find(|(_, is_given)| *is_given) else { return Ok(()) };
+    Err(Failure::Wrong(format!(
+        "{option} is about pairs of links and objects; --ask limits compares joint values with their limits\n  \
+         write: --ask limits without {option}"
+    )))
 }
 
 /// Warns that a tolerance may be in another unit.
@@ -181,7 +211,8 @@ fn query_model(args: &QueryArgs) -> Result<(QueryModel, Option<Cell>), Failure> 
 /// A row to print.
 struct WrittenRow {
     index: usize,
-    collides: bool,
+    /// Whether its state counts: as colliding, or as beyond limits.
+    counts: bool,
     record: Record,
 }
 
@@ -191,21 +222,27 @@ enum Record {
     State(Box<QueryRecord>),
     Contact(Box<ContactRecord>),
     Motion(Box<MotionRecord>),
+    Limits(Box<LimitRecord>),
 }
 
 impl WrittenRow {
     fn state(row: &QueryRow, model: &QueryModel) -> Self {
         let record = Record::State(Box::new(QueryRecord::of(row, model)));
-        Self { index: row.index, collides: row.collides, record }
+        Self { index: row.index, counts: row.collides, record }
     }
 
     fn contact(row: &ContactRow, model: &QueryModel) -> Self {
-        Self { index: row.index, collides: true, record: Record::Contact(Box::new(ContactRecord::of(row, model))) }
+        Self { index: row.index, counts: true, record: Record::Contact(Box::new(ContactRecord::of(row, model))) }
     }
 
     fn motion(row: &MotionRow, model: &QueryModel) -> Self {
         let record = Record::Motion(Box::new(MotionRecord::of(row, model)));
-        Self { index: row.index, collides: row.hit.is_some(), record }
+        Self { index: row.index, counts: row.hit.is_some(), record }
+    }
+
+    fn limits(row: &LimitRow, model: &QueryModel) -> Self {
+        let record = Record::Limits(Box::new(LimitRecord::of(row, model)));
+        Self { index: row.index, counts: row.farthest.is_some(), record }
     }
 }
 
@@ -215,6 +252,7 @@ impl Record {
             Self::State(record) => record.csv(),
             Self::Contact(record) => record.csv(),
             Self::Motion(record) => record.csv(),
+            Self::Limits(record) => record.csv(),
         }
     }
 }
@@ -227,16 +265,17 @@ struct Writer<'a> {
     /// States that have been answered.
     done: usize,
     is_first: bool,
-    colliding: usize,
-    /// Index of the last state that was counted as colliding.
-    last_colliding: Option<usize>,
+    /// States that count: as colliding, or as beyond limits.
+    counted: usize,
+    /// Index of the last state that was counted.
+    last_counted: Option<usize>,
     progress: Progress,
 }
 
 impl<'a> Writer<'a> {
     fn new(args: &'a QueryArgs, model: &'a QueryModel, states: usize) -> Self {
         let progress = Progress::of(states, "states");
-        Self { args, model, states, done: 0, is_first: true, colliding: 0, last_colliding: None, progress }
+        Self { args, model, states, done: 0, is_first: true, counted: 0, last_counted: None, progress }
     }
 
     fn begin(&self) -> Result<(), Failure> {
@@ -244,6 +283,7 @@ impl<'a> Writer<'a> {
             let header = match self.args.ask {
                 QueryKind::Contacts => ContactRecord::HEADER,
                 QueryKind::Time => MotionRecord::HEADER,
+                QueryKind::Limits => LimitRecord::HEADER,
                 _ => QueryRecord::HEADER,
             };
             return print(&format!("{header}\n"));
@@ -255,6 +295,7 @@ impl<'a> Writer<'a> {
             QueryKind::Point => ("point", None),
             QueryKind::Contacts => ("contacts", None),
             QueryKind::Time => ("time", None),
+            QueryKind::Limits => ("limits", None),
         };
         let file = json(&self.model.file.display().to_string())?;
         let level = self.args.effort.level;
@@ -277,14 +318,15 @@ impl<'a> Writer<'a> {
                 text.push('\n');
             }
             // Several contacts of one state count as one colliding state.
-            let is_new = self.args.ask != QueryKind::Contacts || self.last_colliding != Some(row.index);
-            if row.collides && is_new {
-                self.colliding += 1;
-                self.last_colliding = Some(row.index);
+            let is_new = self.args.ask != QueryKind::Contacts || self.last_counted != Some(row.index);
+            if row.counts && is_new {
+                self.counted += 1;
+                self.last_counted = Some(row.index);
             }
             self.done = row.index + 1;
         }
-        self.progress.count(self.done, &format!("{} in contact", self.colliding));
+        let what = if self.args.ask == QueryKind::Limits { "beyond limits" } else { "in contact" };
+        self.progress.count(self.done, &format!("{} {what}", self.counted));
         print(&text)
     }
 
@@ -293,7 +335,8 @@ impl<'a> Writer<'a> {
         let times = self.args.effort.times.then(|| QueryTimes::of(effort));
         if self.args.json {
             let times = times.map_or(Ok(String::new()), |t| json(&t).map(|t| format!(",\n\"times\": {t}")))?;
-            return print(&format!("\n],\n\"colliding\": {}{times}\n}}\n", self.colliding));
+            let count = if self.args.ask == QueryKind::Limits { "beyond" } else { "colliding" };
+            return print(&format!("\n],\n\"{count}\": {}{times}\n}}\n", self.counted));
         }
         if let Some(times) = times {
             note(format_args!("{times}"));

@@ -32,12 +32,13 @@ fn robot<'a>(cell: &'a Cell, args: &TeachArgs) -> Result<&'a CellRobot, Failure>
     let wrong = |what: String| {
         Failure::Wrong(format!("{}: {what}\n  write: --robot with one of {}", args.cell.display(), names.join(", ")))
     };
-    match (&args.robot, cell.robots.as_slice()) {
-        (Some(name), robots) => {
-            robots.iter().find(|r| r.name == *name).ok_or_else(|| wrong(format!("there is no robot `{name}`")))
-        }
-        (None, [only]) => Ok(only),
-        (None, _) => Err(wrong("has several robots".into())),
+    if let Some(name) = &args.robot {
+        let found = cell.robots.iter().find(|r| r.name == *name);
+        return found.ok_or_else(|| wrong(format!("there is no robot `{name}`")));
+    }
+    match cell.guarded_robots().collect::<Vec<_>>()[..] {
+        [only] => Ok(&cell.robots[only.0]),
+        _ => Err(wrong("has several robots".into())),
     }
 }
 

@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let distance_m = monitor.distance(post, 10.0).unwrap_or(10.0);
         least_m = least_m.min(distance_m);
         if tick % 50 == 0 {
-            let reason = report.reason.named(monitor.configuration().regions());
+            let reason = report.reason.named(monitor.configuration());
             let (angle_deg, distance_mm) = (q[0].to_degrees(), 1000.0 * distance_m);
             println!(
                 "{now_s:>5.1} s  {angle_deg:>6.1}°  {distance_mm:>6.0} mm  {:>8.2}  {reason}",

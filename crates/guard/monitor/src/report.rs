@@ -2,9 +2,10 @@
 
 use std::fmt;
 
+use elbowroom_kinematics::Joint;
 use elbowroom_spatial::Vec3;
 
-use crate::{Region, RegionId, VolumeId};
+use crate::{Configuration, RegionId, VolumeId};
 
 /// The result of one tick: plain data with a fixed size.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,19 +71,34 @@ impl OverrideReason {
         }
     }
 
-    /// The reason with the names of the regions, for messages. `regions` are the regions of the monitor's configuration.
-    /// Without names, `Display` shows the region's index.
+    /// The reason with the names of regions and joints, for messages. `configuration` is that of the monitor. Without it,
+    /// `Display` shows indices.
     ///
     /// ```
-    /// use elbowroom_monitor::{OverrideReason, Region, RegionId};
-    /// use elbowroom_spatial::{Rotation, Vec3};
-    /// let regions = [Region::cylinder("post", Vec3::ZERO, 0.1, 2.0, Rotation::IDENTITY)];
+    /// # use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
+    /// # use elbowroom_monitor::{Configuration, ConfigurationParts, Laws};
+    /// use elbowroom_monitor::{Fault, OverrideReason, Region, RegionId};
+    /// use elbowroom_spatial::{Pose, Rotation, Vec3};
+    /// # let slide = Joint {
+    /// #     name: "slide".into(), kind: JointKind::Prismatic, parent: LinkId(0), child: LinkId(1),
+    /// #     origin: Pose::IDENTITY, axis: Vec3::X, limits: Limits::range(0.0, 2.0), mimic: None,
+    /// # };
+    /// # let chain = Chain::new("slide", vec!["base".into(), "carriage".into()], vec![slide])?;
+    /// let regions = vec![Region::cylinder("post", Vec3::ZERO, 0.1, 2.0, Rotation::IDENTITY)];
+    /// # let configuration = Configuration::new(ConfigurationParts {
+    /// #     robot: "slide".into(), base_in_world: Pose::IDENTITY, volumes: vec![], regions, sources: vec![],
+    /// #     grids: vec![], laws: Laws::default(), chain,
+    /// # })?;
     /// let reason = OverrideReason::Region(RegionId(0));
-    /// assert_eq!(reason.named(&regions).to_string(), "near forbidden region `post`");
+    /// assert_eq!(reason.named(&configuration).to_string(), "near forbidden region `post`");
     /// assert_eq!(reason.to_string(), "near forbidden region 0");
+    /// let reason = OverrideReason::Fault(Fault::BeyondLimits { joint: 0, overshoot: 0.125 });
+    /// let text = "joint `slide` is at 2.1250 m, 0.1250 m beyond its upper limit 2.0000 m; 0.0500 m are tolerated";
+    /// assert_eq!(reason.named(&configuration).to_string(), text);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn named(self, regions: &[Region]) -> NamedReason<'_> {
-        NamedReason { reason: self, regions }
+    pub fn named(self, configuration: &Configuration) -> NamedReason<'_> {
+        NamedReason { reason: self, configuration: Some(configuration) }
     }
 
     /// The reason with its region, or the region of its fault, under another index.
@@ -102,22 +118,42 @@ impl OverrideReason {
 
 impl fmt::Display for OverrideReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.named(&[]).fmt(f)
+        NamedReason { reason: *self, configuration: None }.fmt(f)
     }
 }
 
-/// An [`OverrideReason`] with the names of the regions: [`OverrideReason::named`].
+/// An [`OverrideReason`] with the names of regions and joints: [`OverrideReason::named`].
 #[derive(Debug, Clone, Copy)]
 pub struct NamedReason<'a> {
     reason: OverrideReason,
-    regions: &'a [Region],
+    configuration: Option<&'a Configuration>,
 }
 
 impl NamedReason<'_> {
     /// The name of a region, or its index if it is not one of the given regions.
     fn name(&self, id: RegionId) -> RegionName<'_> {
-        self.regions.get(id.0).map_or(RegionName::Index(id.0), |region| RegionName::Name(&region.name))
+        let region = self.configuration.and_then(|configuration| configuration.regions().get(id.0));
+        region.map_or(RegionName::Index(id.0), |region| RegionName::Name(&region.name))
     }
+
+    /// The independent joint with this index in `q`.
+    fn joint(&self, index: usize) -> Option<&Joint> {
+        let chain = self.configuration?.chain();
+        Some(&chain.joints()[chain.active_joints().get(index)?.0])
+    }
+}
+
+/// A reading beyond the limits of its joint, in words.
+fn write_overshoot(f: &mut fmt::Formatter<'_>, joint: &Joint, overshoot: f64) -> fmt::Result {
+    let unit = if joint.kind.turns() { "rad" } else { "m" };
+    let (side, limit) = if overshoot < 0.0 { ("lower", joint.limits.lower) } else { ("upper", joint.limits.upper) };
+    let (name, value, beyond) = (&joint.name, limit + overshoot, overshoot.abs());
+    let tolerated = joint.limits.tolerated_overshoot();
+    write!(
+        f,
+        "joint `{name}` is at {value:.4} {unit}, {beyond:.4} {unit} beyond its {side} limit {limit:.4} {unit}; "
+    )?;
+    write!(f, "{tolerated:.4} {unit} are tolerated")
 }
 
 impl fmt::Display for NamedReason<'_> {
@@ -138,6 +174,10 @@ impl fmt::Display for NamedReason<'_> {
                 let name = self.name(region);
                 write!(f, "the source that region {name} follows jumped, or moves otherwise than it says")
             }
+            OverrideReason::Fault(fault @ Fault::BeyondLimits { joint, overshoot }) => match self.joint(joint) {
+                Some(joint) => write_overshoot(f, joint, overshoot),
+                None => write!(f, "{fault}"),
+            },
             OverrideReason::Fault(fault) => write!(f, "{fault}"),
         }
     }
@@ -158,7 +198,7 @@ impl fmt::Display for RegionName<'_> {
 }
 
 /// A fault, such as invalid input, that stops the robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fault {
     /// The input is older than [`Laws::stale_s`](crate::Laws).
     Stale,
@@ -170,10 +210,12 @@ pub enum Fault {
     WrongLength,
     /// The programmed override is not within 0..1.
     ProgrammedOverride,
-    /// A joint is beyond its limits.
+    /// A joint is farther beyond its limits than is [tolerated](elbowroom_kinematics::Limits::tolerated_overshoot).
     BeyondLimits {
         /// Index of the joint in `q`.
         joint: usize,
+        /// Its [overshoot](elbowroom_kinematics::Limits::overshoot), rad or m.
+        overshoot: f64,
     },
     /// A joint is implausibly fast, or has moved implausibly far since the previous snapshot.
     TooFast {
@@ -221,7 +263,9 @@ impl fmt::Display for Fault {
             Self::NotFinite => write!(f, "input is not a finite number"),
             Self::WrongLength => write!(f, "input has the wrong number of values"),
             Self::ProgrammedOverride => write!(f, "the programmed override is not within 0..1"),
-            Self::BeyondLimits { joint } => write!(f, "joint {joint} is beyond its limits"),
+            Self::BeyondLimits { joint, overshoot } => {
+                write!(f, "joint {joint} is {:.4} rad or m beyond its limits", overshoot.abs())
+            }
             Self::TooFast { joint } => write!(f, "joint {joint} moves faster than it can"),
             Self::NoVelocity => write!(f, "no joint velocities are known yet"),
             Self::Frozen => write!(f, "joint values do not change although the robot is reported to move"),

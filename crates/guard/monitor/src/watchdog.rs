@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use elbowroom_kinematics::{Chain, JointId, JointKind};
+use elbowroom_kinematics::{Chain, JointId, JointKind, Limits};
 
 use crate::override_history::OverrideRange;
 use crate::unchanged_reading::UnchangedReading;
@@ -11,8 +11,6 @@ use crate::{Fault, Laws, Snapshot};
 /// Settings of the plausibility check.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WatchdogSettings {
-    /// Tolerance of the joint limits (rad or m); controllers overshoot by less.
-    pub(crate) limit_tolerance: f64,
     /// Largest plausible speed of a joint as a multiple of its rated speed.
     pub(crate) speed_factor: f64,
     /// Largest plausible speed of a joint without a rated speed, rad/s or m/s: faster than any industrial joint.
@@ -33,7 +31,6 @@ pub(crate) struct WatchdogSettings {
 impl Default for WatchdogSettings {
     fn default() -> Self {
         Self {
-            limit_tolerance: 0.05,
             speed_factor: 1.5,
             default_speed: 20.0,
             jitter: 1e-3,
@@ -76,8 +73,7 @@ struct SnapshotTimes {
 
 #[derive(Debug)]
 struct JointBound {
-    lower: f64,
-    upper: f64,
+    limits: Limits,
     max_speed: f64,
     wraps: bool,
 }
@@ -96,8 +92,7 @@ impl Watchdog {
             let joint = &chain.joints()[id.0];
             let wraps = joint.kind == JointKind::Continuous;
             JointBound {
-                lower: if wraps { f64::NEG_INFINITY } else { joint.limits.lower - settings.limit_tolerance },
-                upper: if wraps { f64::INFINITY } else { joint.limits.upper + settings.limit_tolerance },
+                limits: joint.limits,
                 max_speed: joint.limits.velocity.map_or(settings.default_speed, |v| v * settings.speed_factor),
                 wraps,
             }
@@ -210,8 +205,8 @@ impl Watchdog {
     fn check_joints(&self, s: &Snapshot) -> Result<(), Fault> {
         for (joint, bound) in self.joints.iter().enumerate() {
             let q = s.q[joint];
-            if !(bound.lower <= q && q <= bound.upper) {
-                return Err(Fault::BeyondLimits { joint });
+            if !bound.limits.is_plausible(q) {
+                return Err(Fault::BeyondLimits { joint, overshoot: bound.limits.overshoot(q) });
             }
             let is_fast = s.qd.get(joint).is_some_and(|v| v.abs() > bound.max_speed);
             if is_fast || self.demands_too_much(s, joint, bound) || self.jumped(s, joint, bound) {

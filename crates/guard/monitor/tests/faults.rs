@@ -1,7 +1,7 @@
 //! Input that must stop the robot.
 
 use crate::common::{XorshiftStar, arm, arm_volumes, configuration, gantry, parts};
-use elbowroom_kinematics::LinkId;
+use elbowroom_kinematics::{Chain, Joint, LinkId};
 use elbowroom_monitor::{
     Configuration, ConfigurationParts, EventKind, Fault, Monitor, OverrideReason, Region, RegionId, Snapshot, SourceId,
     SourceState, Volume,
@@ -45,7 +45,7 @@ fn every_fault_is_named() {
     assert_eq!(fault_of(|s| s.intent = Some(&NAN)), Some(Fault::NotFinite));
     assert_eq!(fault_of(|s| s.q = &NAN[..5]), Some(Fault::WrongLength));
     assert_eq!(fault_of(|s| s.qd = &NAN[..5]), Some(Fault::WrongLength));
-    assert_eq!(fault_of(|s| s.q = &FAR), Some(Fault::BeyondLimits { joint: 2 }));
+    assert_eq!(fault_of(|s| s.q = &FAR), Some(Fault::BeyondLimits { joint: 2, overshoot: 2.6 - 2.5 }));
     assert_eq!(fault_of(|s| s.q = &JUMP), Some(Fault::TooFast { joint: 0 }));
     assert_eq!(fault_of(|s| s.qd = &FAST), Some(Fault::TooFast { joint: 5 }));
     assert_eq!(fault_of(|s| s.programmed_override = f64::NAN), Some(Fault::ProgrammedOverride));
@@ -144,4 +144,62 @@ fn ten_million_random_bit_patterns_neither_panic_nor_pass_as_valid() {
     }
     println!("10000000 snapshots, {accepted} accepted");
     assert!(accepted > 10_000);
+}
+
+/// A first reading, so that it has not jumped. The oracle compares with the limits by itself.
+#[test]
+fn a_reading_is_refused_exactly_if_it_overshoots_by_more_than_its_joint_tolerates() {
+    let mut random = XorshiftStar(61);
+    let mut counts = [0; 2];
+    for _ in 0..2000 {
+        let mut joints = gantry().joints().to_vec();
+        for joint in &mut joints {
+            joint.limits.lower = random.between(-2.0, 0.0);
+            joint.limits.upper = random.between(0.0, 2.0);
+            let tolerance = [None, Some(0.0), Some(random.between(0.0, 0.2))][random.below(3)];
+            joint.limits.overshoot_tolerance = tolerance;
+        }
+        let reading = |joint: &Joint, random: &mut XorshiftStar| {
+            let limit = if random.below(2) == 0 { joint.limits.lower } else { joint.limits.upper };
+            // Mostly near a limit, sometimes exactly on it, or exactly at its tolerance.
+            let tolerance = joint.limits.overshoot_tolerance.unwrap_or(0.05);
+            match random.below(20) {
+                0 => limit,
+                1 => limit + tolerance.copysign(limit),
+                2 => limit + (tolerance + 2e-6).copysign(limit),
+                _ => limit + random.between(-0.3, 0.06) * limit.signum(),
+            }
+        };
+        let q: Vec<f64> = joints.iter().map(|joint| reading(joint, &mut random)).collect();
+        let beyond = joints.iter().zip(&q).position(|(joint, q)| {
+            let (lower, upper) = (joint.limits.lower, joint.limits.upper);
+            let tolerance = joint.limits.overshoot_tolerance.unwrap_or(0.05);
+            *q < lower - tolerance - 1e-6 || *q > upper + tolerance + 1e-6
+        });
+        let chain = Chain::new("g", gantry().links().to_vec(), joints.clone()).unwrap();
+        let mut m = Monitor::new(configuration(chain, vec![Volume::tcp(LinkId(6), Vec3::ZERO)], vec![]), None).unwrap();
+        let reason = m.tick(&Snapshot::stationary(0.0, &q)).reason;
+        match (beyond, reason) {
+            (Some(joint), OverrideReason::Fault(Fault::BeyondLimits { joint: found, overshoot })) => {
+                assert_eq!(found, joint);
+                let limits = joints[joint].limits;
+                let by = if q[joint] > limits.upper { q[joint] - limits.upper } else { q[joint] - limits.lower };
+                assert_eq!(overshoot, by, "{limits:?} {}", q[joint]);
+                counts[0] += 1;
+            }
+            (None, OverrideReason::Free) => counts[1] += 1,
+            other => panic!("{other:?} at {q:?} of {joints:?}"),
+        }
+    }
+    assert!(counts.iter().all(|count| *count > 200), "{counts:?}");
+}
+
+#[test]
+fn a_tolerance_that_is_no_distance_makes_no_chain() {
+    for tolerance in [-1e-9, f64::NAN, f64::INFINITY] {
+        let mut joints = arm().joints().to_vec();
+        joints[3].limits.overshoot_tolerance = Some(tolerance);
+        let error = Chain::new("arm", arm().links().to_vec(), joints).unwrap_err().to_string();
+        assert!(error.contains("`j4`") && error.contains("0 or more"), "{error}");
+    }
 }

@@ -72,7 +72,8 @@ fn on_a_link(spec: &mut CellSpec, folder: &Path, random: &mut Random) {
         let mut with = spec.clone();
         with.robots.push(carrier);
         let Some(Encounter { cell, q, place, .. }) = Encounter::new(&with, folder, random) else { continue };
-        let frame = random.one(&["flange", "flange", "tcp", "link_1"]);
+        let is_mechanism = random.percent(40);
+        let frame = if is_mechanism { "link_1" } else { random.one(&["flange", "flange", "tcp", "link_1"]) };
         let robot = &cell.robots[1];
         let link = if frame == "link_1" { link_named(&cell, frame) } else { Some(robot.flange.0) };
         let Some(link) = link else { continue };
@@ -80,6 +81,7 @@ fn on_a_link(spec: &mut CellSpec, folder: &Path, random: &mut Random) {
         let region = region::at(&with, 0, local, "m0", random);
         let follow = Some(FollowSpec::Robot { robot: 1, frame });
         with.regions.push(RegionSpec { follow, robots: vec![0], ..region });
+        with.robots[1].is_mechanism = is_mechanism;
         if region::starts_outside(&with, folder) {
             *spec = with;
             return;

@@ -121,7 +121,9 @@ fn carriage(random: &mut Random, centers: &[Vector]) -> RobotSpec {
         volumes: "auto",
         stop_time: stop_time(random),
         acceleration: None,
+        overshoot: None,
         program: ProgramSpec::of_steps(100.0, steps),
         evades: Vec::new(),
+        is_mechanism: false,
     }
 }

@@ -107,7 +107,7 @@ fn without_grids(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSp
         Kind::Stop => stop(random, places),
         Kind::Faults => {
             let mut spec = stop(random, places);
-            faults::add(&mut spec, random);
+            faults::add(&mut spec, random, places);
             spec
         }
         Kind::Moving => carried::cell(random, places),

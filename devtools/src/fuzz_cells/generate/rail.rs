@@ -62,7 +62,9 @@ fn one_joint(row: DhRow, start: f64, steps: Vec<StepSpec>, random: &mut Random) 
         // Half of them stop slowly: they hit whatever they do not foresee.
         stop_time: if random.percent(50) { random.between(0.5, 1.5) } else { stop_time(random) },
         acceleration: None,
+        overshoot: None,
         program: ProgramSpec::of_steps(100.0, steps),
         evades: Vec::new(),
+        is_mechanism: false,
     }
 }

@@ -17,6 +17,8 @@ const START_M: f64 = 0.005;
 /// Makes a forbidden region on the path of one of the robots; `None` if none was found that its start is outside of.
 pub fn on_the_path(spec: &CellSpec, cell: &Cell, name: &str, random: &mut Random) -> Option<RegionSpec> {
     let robot = random.whole(0, spec.robots.len() - 1);
+    // No region concerns a mechanism.
+    let robot = if spec.robots[robot].is_mechanism { 0 } else { robot };
     for _ in 0..TRIES {
         let at = point_on_the_path(spec, cell, robot, random)?;
         let base = cell.robots[robot].base_in_world.translation;

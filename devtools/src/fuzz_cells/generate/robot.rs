@@ -62,11 +62,13 @@ fn bare(model: Model, start: Vec<f64>, random: &mut Random) -> RobotSpec {
         volumes: "auto",
         stop_time: stop_time(random),
         acceleration: None,
+        overshoot: None,
         program: ProgramSpec::of_steps(
             if random.percent(80) { 100.0 } else { random.whole(20, 100) as f64 },
             Vec::new(),
         ),
         evades: Vec::new(),
+        is_mechanism: false,
     }
 }
 

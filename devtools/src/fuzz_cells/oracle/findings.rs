@@ -30,6 +30,10 @@ pub enum Finding {
     Tilted { robot: usize, t_s: f64, off_rad: f64, within_rad: f64 },
     /// The number of a grid is not that of the cell that the robot occupies.
     WrongCell { robot: usize, t_s: f64, number: u64 },
+    /// A reading beyond the limits of a joint did not stop its robot, or (`stopped`) one within them did.
+    MisreadLimits { robot: usize, joint: usize, t_s: f64, stopped: bool },
+    /// A mechanism was slowed down, or a region concerns it.
+    Slowed { robot: usize, t_s: f64 },
     /// A joint was faster than it can, by this share of its speed.
     TooFast { robot: usize, t_s: f64, share: f64 },
     /// A joint decelerated harder than it can.

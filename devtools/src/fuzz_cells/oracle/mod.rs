@@ -16,12 +16,14 @@ mod grids;
 mod guarded;
 mod guided;
 mod kept_axes;
+mod mechanisms;
 mod motion;
 mod mounted;
 mod physics;
 mod place;
 mod presence;
 mod promises;
+pub mod readings;
 mod simplex;
 mod solid;
 mod sweep;
@@ -62,6 +64,7 @@ pub fn check(
     cooperating::check(cell, recording, &arms, &mut findings);
     kept_axes::check(cell, recording, &arms, &mut findings);
     grids::check(cell, recording, &arms, &mut findings);
+    mechanisms::check(cell, recording, &mut findings);
     Ok(findings)
 }
 

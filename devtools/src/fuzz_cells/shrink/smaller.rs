@@ -155,6 +155,12 @@ fn emptier_robot(list: &mut Candidates<'_>, r: usize, robot: &RobotSpec) {
     for i in 0..hand.tools.len() {
         list.push(|c| remove_tool(c, r, i));
     }
+    if robot.is_mechanism {
+        list.push(|c| c.robots[r].is_mechanism = false);
+    }
+    if robot.overshoot.is_some() {
+        list.push(|c| c.robots[r].overshoot = None);
+    }
     if !robot.evades.is_empty() {
         list.push(|c| c.robots[r].evades.clear());
     }

@@ -16,9 +16,12 @@ pub struct RobotSpec {
     pub stop_time: f64,
     /// Acceleration of all joints, for models without their own.
     pub acceleration: Option<f64>,
+    /// Tolerated overshoot of the joint limits, if it is stated.
+    pub overshoot: Option<f64>,
     pub program: ProgramSpec,
     /// Names of the objects that it evades; empty for a robot without avoidance.
     pub evades: Vec<String>,
+    pub is_mechanism: bool,
 }
 
 /// Parts at the flange: one tool and a load, or several tools.
@@ -122,9 +125,16 @@ impl RobotSpec {
         if self.program.recording.is_none() {
             let _ = writeln!(t, "start = {}", list(&self.start));
         }
+        if self.is_mechanism {
+            t.push_str("kind = \"mechanism\"\n\n");
+            return;
+        }
         let _ = writeln!(t, "stop_time = {}\nvolumes = \"{}\"", self.stop_time, self.volumes);
         if let Some(a) = self.acceleration {
             let _ = writeln!(t, "acceleration = {a}");
+        }
+        if let Some(overshoot) = self.overshoot {
+            let _ = writeln!(t, "overshoot = {overshoot}");
         }
         self.hand.write(t, index);
         t.push('\n');

@@ -5,6 +5,7 @@ use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_robot::{ObjectId, RobotId};
 
+use super::mechanism;
 use super::robot::robot_of;
 use super::schema::{AVOIDANCE, names};
 use super::tools::with_exchanged_tools;
@@ -34,7 +35,8 @@ const PLAN_MS: f64 = 70.0;
 pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("avoidance")? {
         t.only(&names(&[AVOIDANCE]))?;
-        let (robot, _) = robot_of(name, &t, &cell.robots)?;
+        let (robot, of_table) = robot_of(name, &t, &cell.robots)?;
+        mechanism::refuse_table(&t, of_table, "avoids nothing")?;
         cell.robots[robot.0].avoidance = Some(spec(&t, cell, robot)?);
     }
     Ok(())

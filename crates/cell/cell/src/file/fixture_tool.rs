@@ -4,6 +4,7 @@ use elbowroom_formats::toml_tables::Value;
 use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_robot::RobotId;
 
+use super::mechanism;
 use crate::fixture::FixtureTool;
 use crate::{Cell, CellRobot};
 
@@ -26,6 +27,7 @@ pub(super) fn tool(v: &Value<'_>, cell: &Cell) -> Result<FixtureTool> {
 
 /// The tool of this name of a robot; it must have a solid.
 pub(super) fn tool_of(v: &Value<'_>, cell: &Cell, robot: RobotId, tool_name: &str) -> Result<FixtureTool> {
+    mechanism::refuse(v, &cell.robots[robot.0], "carries no tool")?;
     let CellRobot { name: robot_name, payload, .. } = &cell.robots[robot.0];
     let tools = &payload.tools;
     let is_only = tool_name == "tool" && tools.len() == 1;

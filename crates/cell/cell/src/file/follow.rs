@@ -43,7 +43,7 @@ pub(super) fn read(
         "robot" => {
             let id = robot_id(&source, known.robots)?;
             let robot = &known.robots[id.0];
-            let (link, in_link) = frame(t.get("frame").as_ref(), robot)?;
+            let (link, in_link) = frame(&t, robot)?;
             let speeds: Vec<f64> = robot.limits.iter().map(|limit| limit.velocity * FASTER).collect();
             limits = fastest(&robot.robot.chain, &speeds, link, in_link);
             Follow::Robot { robot: id, link, in_link }
@@ -153,8 +153,12 @@ fn object_id(v: &Value<'_>, known: &Definitions<'_>) -> Result<ObjectId> {
     })
 }
 
-fn frame(v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(LinkId, Pose)> {
-    let Some(v) = v else { return Ok((robot.flange, Pose::IDENTITY)) };
+fn frame(t: &Table<'_>, robot: &CellRobot) -> Result<(LinkId, Pose)> {
+    let v = t.get("frame");
+    if robot.is_mechanism() {
+        return part_of_mechanism(t, v.as_ref(), robot);
+    }
+    let Some(v) = &v else { return Ok((robot.flange, Pose::IDENTITY)) };
     match v.text()? {
         "flange" => Ok((robot.flange, Pose::IDENTITY)),
         "tool" | "tcp" => Ok((robot.flange, robot.tcp_in_flange)),
@@ -163,6 +167,19 @@ fn frame(v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(LinkId, Pose)> {
             None => Err(unknown_link(v, name, &robot.robot.chain)),
         },
     }
+}
+
+/// The part that moves a region: a mechanism has no flange that would go without saying.
+fn part_of_mechanism(t: &Table<'_>, v: Option<&Value<'_>>, robot: &CellRobot) -> Result<(LinkId, Pose)> {
+    let chain = &robot.robot.chain;
+    let Some(v) = v else {
+        let what = format!("`{}` needs the key `frame`: which part of the mechanism \"{}\"", t.name, robot.name);
+        let solid = robot.robot.links_with_colliders().map(|link| format!("\"{}\"", chain.links()[link.0]));
+        let parts = solid.collect::<Vec<_>>().join(" or ");
+        return Err(t.error(what).hint(format!("frame = {parts}")));
+    };
+    let name = v.text()?;
+    chain.link(name).map(|link| (link, Pose::IDENTITY)).ok_or_else(|| unknown_link(v, name, chain))
 }
 
 /// Warns before a run if the monitors will treat a motion in the file as a jump.

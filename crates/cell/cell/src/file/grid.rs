@@ -7,7 +7,9 @@ use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 
 use super::definitions::robot_id;
+use super::mechanism::{self, NOT_GUARDED};
 use super::schema::{GRID, names};
+use crate::cell::guarded;
 use crate::{Cell, CellGrid, CellRobot, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -31,11 +33,12 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     Ok(())
 }
 
-fn robots(t: &Table<'_>, robots: &[CellRobot]) -> Result<Vec<RobotId>> {
-    let Some(v) = t.get("robots") else { return Ok((0..robots.len()).map(RobotId).collect()) };
+fn robots(t: &Table<'_>, all: &[CellRobot]) -> Result<Vec<RobotId>> {
+    let Some(v) = t.get("robots") else { return Ok(guarded(all).collect()) };
     let mut named: Vec<RobotId> = Vec::new();
     for item in &v.list("robots = [\"r1\"]")? {
-        let robot = robot_id(item, robots)?;
+        let robot = robot_id(item, all)?;
+        mechanism::refuse(item, &all[robot.0], NOT_GUARDED)?;
         if named.contains(&robot) {
             return Err(item.error("is named twice").hint("each robot once"));
         }

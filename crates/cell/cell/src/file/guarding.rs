@@ -15,7 +15,7 @@ type Result<T> = std::result::Result<T, Diagnostic>;
 /// A monitored region without slow-down causes only a warning: its output never rises.
 pub(super) fn check(t: &Table<'_>, cell: &Cell, region: CellRegionId, warnings: &mut Vec<Diagnostic>) -> Result<()> {
     let (robots, region) = (&cell.robots, &cell.regions[region.0]);
-    if region.robots.is_empty() && !robots.is_empty() {
+    if region.robots.is_empty() && cell.guarded_robots().next().is_some() {
         let what = format!(
             "region \"{}\" concerns no robot: a robot is not guarded against a region that follows it",
             region.region.name

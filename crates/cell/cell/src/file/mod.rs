@@ -15,6 +15,8 @@ mod goal;
 mod grid;
 mod guarding;
 mod guide;
+mod joint_limits;
+mod mechanism;
 mod models;
 mod object;
 mod operator;
@@ -297,6 +299,7 @@ fn maps(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
     for (name, t) in root.named("map")? {
         t.only(&names(&[schema::MAP]))?;
         let (id, robot) = robot_of(name, &t, &cell.robots)?;
+        mechanism::refuse_table(&t, robot, "plans no paths around the cells of a map")?;
         let names = robot.joint_names();
         let default = MapSpec::of(robot);
         let joints = match t.get("joints") {

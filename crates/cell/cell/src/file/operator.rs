@@ -9,6 +9,7 @@ use elbowroom_spatial::Pose;
 
 use super::definitions::robot_id;
 use super::fixture_tool::tool_of;
+use super::mechanism;
 use super::poses::read_with;
 use super::schema::{OPERATOR, names};
 use super::tools::with_exchanged_tools;
@@ -48,6 +49,7 @@ fn operator(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellOperator> {
     let units = cell.units;
     let robot_value = t.need("robot", "robot = \"arm\"")?;
     let robot = robot_id(&robot_value, &cell.robots)?;
+    mechanism::refuse(&robot_value, &cell.robots[robot.0], "has no tool that a person could guide")?;
     refuse_other_motion(&robot_value, cell, robot)?;
     refuse_unseen_changes(t, cell)?;
     let default = NavigatorSettings::default();

@@ -11,7 +11,7 @@ use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use super::schema::{self, KEPT_AXIS, STEPS, names};
-use super::{goal, models};
+use super::{goal, mechanism, models};
 use crate::{
     Cell, CellRegion, CellRegionId, CellRobot, KeptAxis, PathPlanner, Program, ProgramBody, ProgramStep, StepAction,
     Units,
@@ -58,6 +58,7 @@ fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
         }
     };
     t.only(&names(&[kind.keys]))?;
+    refuse_hand(&t, kind.word, robot)?;
     let action = match kind.word {
         "move" => movement(&t, cell.units, robot)?,
         "region" => switch(&t, &cell.regions)?,
@@ -68,6 +69,17 @@ fn step(v: &Value<'_>, cell: &Cell, robot: &CellRobot) -> Result<ProgramStep> {
         _ => StepAction::Override(t.need("override", "override = 50")?.percent()?),
     };
     Ok(ProgramStep { line: t.line, action })
+}
+
+/// Refuses a step that needs a hand or a tool centre point, in the program of a mechanism.
+fn refuse_hand(t: &Table<'_>, word: &'static str, robot: &CellRobot) -> Result<()> {
+    match t.get(word) {
+        Some(v) if ["grip", "release", "tool"].contains(&word) => mechanism::refuse_step(&v, robot, "has no hand"),
+        Some(v) if word == "move" && v.text().is_ok_and(|kind| kind == "linear") => {
+            mechanism::refuse_step(&v, robot, "has no tool centre point that could move straight")
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The object that a step grips or releases.

@@ -10,8 +10,10 @@ use elbowroom_spatial::units::LengthUnit;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use super::definitions::{Definitions, robot_id};
+use super::mechanism::{self, NOT_GUARDED};
 use super::schema::{ENCODER, FENCE, REGION, REGION_SHAPES, names};
 use super::{fence, follow, models};
+use crate::cell::guarded;
 use crate::{CellRegion, Encoder, Follow, RegionSolid, Travel, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -280,7 +282,7 @@ fn robots(t: &Table<'_>, known: &Definitions<'_>, follow: Option<Follow>) -> Res
         _ => None,
     };
     let Some(v) = t.get("robots") else {
-        return Ok((0..known.robots.len()).map(RobotId).filter(|r| Some(*r) != followed).collect());
+        return Ok(guarded(known.robots).filter(|r| Some(*r) != followed).collect());
     };
     let list = v.list("robots = [\"r1\"]")?;
     if list.is_empty() {
@@ -289,6 +291,7 @@ fn robots(t: &Table<'_>, known: &Definitions<'_>, follow: Option<Follow>) -> Res
     let mut robots = Vec::new();
     for item in &list {
         let robot = robot_id(item, known.robots)?;
+        mechanism::refuse(item, &known.robots[robot.0], NOT_GUARDED)?;
         if Some(robot) == followed {
             let what = "names the robot that the region follows: it would stop itself";
             return Err(item.error(what).hint("the other robots only, or leave `robots` out"));

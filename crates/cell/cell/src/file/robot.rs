@@ -3,36 +3,25 @@
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_kinematics::dh::ClassicalRow;
-use elbowroom_kinematics::{Chain, JointKind, JointLimits, Limits};
-use elbowroom_monitor::VolumeModel;
+use elbowroom_kinematics::{Chain, JointKind, Limits};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
 use super::schema::{self, names};
-use super::{flange, models, tools};
-use crate::model_limits::{ACCELERATION_TIME_S, JERK_TIME_S, STOP_TIME_S};
+use super::{flange, joint_limits, mechanism, models, tools};
 use crate::{CellRobot, Payload, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
-/// Longest stop time, s.
-const MAX_STOP_TIME_S: f64 = 60.0;
-/// Largest speeds, accelerations and jerks, in the file's units.
-const MAX_RATE: f64 = 1e9;
-
-/// Default speed of revolute joints, rad/s.
-const REVOLUTE_SPEED: f64 = std::f64::consts::PI;
-/// Default speed of prismatic joints, m/s.
-const PRISMATIC_SPEED: f64 = 1.0;
-
 pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Diagnostic>) -> Result<CellRobot> {
     t.only(&names(&[schema::ROBOT]))?;
+    let volumes = mechanism::volumes(name, t)?;
     let mut robot = model(t, units, warnings)?;
     if let Some(v) = t.get("ignore") {
         ignore(&v, &mut robot)?;
     }
-    let mut flange = flange::read(name, t, &robot.chain, warnings)?;
+    let mut flange = if volumes.is_some() { flange::read(name, t, &robot.chain, warnings)? } else { robot.chain.tip() };
     let base_in_world = t.get("base").map_or(Ok(Pose::IDENTITY), |v| units.pose(&v))?;
     let (mut tcp_in_flange, tool) =
         t.get("tool").map_or(Ok((Pose::IDENTITY, None)), |v| tool(&v.table(TOOL)?, units))?;
@@ -43,11 +32,9 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<D
         (flange, tcp_in_flange) = (active.link, active.tcp_in_link);
     }
     let start = start(name, t, &robot.chain, units, warnings)?;
-    let limits = limits(name, t, &robot.chain, units, warnings)?;
+    let limits = joint_limits::read(name, t, &robot.chain, units, warnings)?;
     let states = states(t, &robot.chain, &start, units)?;
-    if t.get("speed").is_some() {
-        robot.chain = with_speeds(t, &robot.chain, &limits)?;
-    }
+    joint_limits::set_plausible(t, &mut robot.chain, &limits, units)?;
     Ok(CellRobot {
         name: name.to_owned(),
         line: t.line,
@@ -58,7 +45,7 @@ pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<D
         start,
         start_given: t.get("start").is_some(),
         states,
-        volumes: t.get("volumes").map_or(Ok(VolumeModel::default()), |v| volume_model(&v))?,
+        volumes,
         limits,
         program: None,
         avoidance: None,
@@ -260,16 +247,6 @@ fn states(t: &Table<'_>, chain: &Chain, start: &[f64], units: Units) -> Result<V
     Ok(states)
 }
 
-fn volume_model(v: &Value<'_>) -> Result<VolumeModel> {
-    v.word(&[
-        ("auto", VolumeModel::Tightest),
-        ("capsule", VolumeModel::Capsule),
-        ("box", VolumeModel::Box),
-        ("hull", VolumeModel::Hull),
-        ("mesh", VolumeModel::Exact),
-    ])
-}
-
 /// Joint values in the file's units, checked against the number of joints and their limits.
 pub(super) fn joint_values(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
     let zeros = vec!["0"; chain.dof()].join(", ");
@@ -321,83 +298,6 @@ fn start_state(robot: &str, v: &Value<'_>, state: &str, states: &[(String, Vec<f
         v.error(format!("names the state \"{state}\", which robot \"{robot}\" does not have"))
             .hint(suggest::hint(state, known))
     })
-}
-
-/// Time from full speed to rest, s.
-fn stop_time(v: &Value<'_>) -> Result<f64> {
-    let time_s = v.positive()?;
-    if time_s > MAX_STOP_TIME_S {
-        let what = format!("is {time_s} s: no robot brakes for that long");
-        return Err(v.error(what).hint(format!("stop_time = 0.5   (at most {MAX_STOP_TIME_S})")));
-    }
-    Ok(time_s)
-}
-
-/// One number for all joints, or a list with one per joint.
-fn per_joint(v: &Value<'_>, chain: &Chain, units: Units) -> Result<Vec<f64>> {
-    let values = if v.is_list() {
-        v.list("[…]")?.iter().map(Value::positive).collect::<Result<Vec<_>>>()?
-    } else {
-        vec![v.positive()?; chain.dof()]
-    };
-    if values.len() != chain.dof() {
-        let what = format!("has {} values for {} joints", values.len(), chain.dof());
-        return Err(v.error(what).hint("one number for all joints, or a list with one per joint"));
-    }
-    if let Some(value) = values.iter().find(|x| **x > MAX_RATE) {
-        return Err(v.error(format!("has {value:e}: no joint is that fast")).hint(format!("at most {MAX_RATE:e}")));
-    }
-    let prismatic = |j: &elbowroom_kinematics::JointId| chain.joints()[j.0].kind == JointKind::Prismatic;
-    Ok(values.iter().zip(chain.active_joints()).map(|(x, j)| units.joint(prismatic(j), *x)).collect())
-}
-
-/// The chain with the cell's speeds, which the monitor uses for plausibility checks.
-fn with_speeds(t: &Table<'_>, chain: &Chain, limits: &[JointLimits]) -> Result<Chain> {
-    let mut joints = chain.joints().to_vec();
-    for (id, limit) in chain.active_joints().iter().zip(limits) {
-        joints[id.0].limits.velocity = Some(limit.velocity);
-    }
-    Chain::new(chain.name(), chain.links().to_vec(), joints).map_err(|e| t.error(e))
-}
-
-fn limits(
-    name: &str,
-    t: &Table<'_>,
-    chain: &Chain,
-    units: Units,
-    warnings: &mut Vec<Diagnostic>,
-) -> Result<Vec<JointLimits>> {
-    let given = |key: &str| t.get(key).map(|v| per_joint(&v, chain, units)).transpose();
-    let (speed, acceleration, jerk) = (given("speed")?, given("acceleration")?, given("jerk")?);
-    let stop_time = t.get("stop_time").map_or(Ok(STOP_TIME_S), |v| stop_time(&v))?;
-    let mut unknown = Vec::new();
-    let mut limits = Vec::with_capacity(chain.dof());
-    for (i, id) in chain.active_joints().iter().enumerate() {
-        let joint = &chain.joints()[id.0];
-        let sane = |v: Option<f64>| v.filter(|x| *x > 0.0 && x.is_finite());
-        let velocity = speed.as_ref().map(|s| s[i]).or(sane(joint.limits.velocity)).unwrap_or_else(|| {
-            unknown.push(joint.name.as_str());
-            if joint.kind == JointKind::Prismatic { PRISMATIC_SPEED } else { REVOLUTE_SPEED }
-        });
-        let acceleration = acceleration
-            .as_ref()
-            .map(|a| a[i])
-            .or(sane(joint.limits.acceleration))
-            .unwrap_or(velocity / ACCELERATION_TIME_S);
-        let jerk = jerk.as_ref().map_or(acceleration / JERK_TIME_S, |j| j[i]);
-        let rates = JointLimits::new(velocity, acceleration, jerk).stopping_at(velocity / stop_time);
-        limits.push(rates.within(joint.limits.lower, joint.limits.upper));
-    }
-    if !unknown.is_empty() {
-        let what = format!(
-            "the model of \"{name}\" gives no speed for {}: taken as 180 deg/s (1 m/s for prismatic joints)",
-            unknown.join(", ")
-        );
-        warnings.push(
-            Diagnostic::new(t.file, t.line, what).hint("speed = […]   (per joint, in the cell's units per second)"),
-        );
-    }
-    Ok(limits)
 }
 
 /// The robot that a table `[map.NAME]` or `[program.NAME]` refers to.

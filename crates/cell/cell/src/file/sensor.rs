@@ -7,6 +7,7 @@ use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_robot::RobotId;
 use elbowroom_vision::{Intrinsics, Point2, TrackSettings};
 
+use super::mechanism;
 use super::robot::robot_of;
 use super::tools::with_exchanged_tools;
 use crate::{Cell, CellSensor, SensorKind, Units};
@@ -63,13 +64,18 @@ fn robot(t: &Table<'_>, cell: &Cell) -> Result<RobotId> {
     match t.get("robot") {
         Some(v) => {
             let name = v.text()?;
-            robot_of(name, &t.clone().at_line(v.line), &cell.robots).map(|(id, _)| id)
+            let (id, robot) = robot_of(name, &t.clone().at_line(v.line), &cell.robots)?;
+            mechanism::refuse(&v, robot, "plans no paths around the cells of a map")?;
+            Ok(id)
         }
-        None if cell.robots.len() == 1 => Ok(RobotId(0)),
-        None => {
-            let names = cell.robots.iter().map(|r| format!("\"{}\"", r.name)).collect::<Vec<_>>().join(" or ");
-            Err(t.error(format!("`{}` needs the key `robot`", t.name)).hint(format!("robot = {names}")))
-        }
+        None => match cell.guarded_robots().collect::<Vec<_>>()[..] {
+            [only] => Ok(only),
+            ref several => {
+                let name = |id: &RobotId| format!("\"{}\"", cell.robots[id.0].name);
+                let names = several.iter().map(name).collect::<Vec<_>>().join(" or ");
+                Err(t.error(format!("`{}` needs the key `robot`", t.name)).hint(format!("robot = {names}")))
+            }
+        },
     }
 }
 
@@ -87,10 +93,11 @@ fn robots(t: &Table<'_>, cell: &Cell) -> Result<Vec<RobotId>> {
 }
 
 fn named_robots(t: &Table<'_>, cell: &Cell) -> Result<Vec<RobotId>> {
-    let Some(v) = t.get("robots") else { return Ok((0..cell.robots.len()).map(RobotId).collect()) };
+    let Some(v) = t.get("robots") else { return Ok(cell.guarded_robots().collect()) };
     let mut found = Vec::new();
     for name in v.list("robots = [\"arm\"]   (those that keep clear of its obstacles)")? {
-        let (id, _) = robot_of(name.text()?, t, &cell.robots)?;
+        let (id, robot) = robot_of(name.text()?, t, &cell.robots)?;
+        mechanism::refuse(&name, robot, "avoids nothing")?;
         if found.contains(&id) {
             return Err(name.error("names a robot for the second time").hint("each robot once"));
         }

@@ -7,6 +7,7 @@ use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_spatial::Vec3;
 
 use super::definitions::robot_id;
+use super::mechanism;
 use super::operator::{refuse_other_motion, stale_s, stream};
 use super::schema::{GRASP, VIRTUAL_ROBOT, names};
 use super::tools::with_exchanged_tools;
@@ -103,6 +104,7 @@ fn robots(v: &Value<'_>, cell: &Cell) -> Result<Vec<RobotId>> {
     let mut robots = Vec::new();
     for v in v.list("robots = [\"left\", \"right\"]")? {
         let robot = robot_id(&v, &cell.robots)?;
+        mechanism::refuse(&v, &cell.robots[robot.0], "carries nothing")?;
         let name = &cell.robots[robot.0].name;
         if robots.contains(&robot) {
             return Err(v.error(format!("names \"{name}\" twice")).hint("each robot once"));

@@ -6,20 +6,22 @@ use elbowroom_kinematics::{JointKind, JointLimits};
 use elbowroom_planner::{PathEnd, RrtConnectError};
 use elbowroom_robot::RobotId;
 
-/// The robot of this name; without a name, the only robot.
+/// The robot of this name; without a name, the only robot that is no mechanism.
 ///
 /// # Errors
 /// An error if the robot does not exist, or if there are several robots and no name.
 pub fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, &'c CellRobot), Diagnostic> {
     let names = || cell.robots.iter().map(|r| r.name.as_str());
     let wrong = |what: String, hint: String| Err(Diagnostic::new(&cell.file, None, what).hint(hint));
-    match (name, &cell.robots[..]) {
-        (None, [only]) => Ok((RobotId(0), only)),
-        (None, _) => wrong(format!("has {} robots: name one", cell.robots.len()), suggest::hint("", names())),
-        (Some(name), robots) => match robots.iter().position(|r| r.name == name) {
-            Some(i) => Ok((RobotId(i), &robots[i])),
-            None => wrong(format!("has no robot \"{name}\""), suggest::hint(name, names())),
-        },
+    let Some(name) = name else {
+        return match cell.guarded_robots().collect::<Vec<_>>()[..] {
+            [only] => Ok((only, &cell.robots[only.0])),
+            ref robots => wrong(format!("has {} robots: name one", robots.len()), suggest::hint("", names())),
+        };
+    };
+    match cell.robots.iter().position(|r| r.name == name) {
+        Some(i) => Ok((RobotId(i), &cell.robots[i])),
+        None => wrong(format!("has no robot \"{name}\""), suggest::hint(name, names())),
     }
 }
 

@@ -68,9 +68,9 @@ impl QueryEffort {
 
 /// Evaluates a query for every state, and returns the work for the rows taken.
 ///
-/// `take` is called with the rows, in order and block by block; it returns whether to continue. [`QueryKind::Contacts`]
-/// and [`QueryKind::Time`] are answered like [`QueryKind::Point`]: [`evaluate_contacts`] and
-/// [`evaluate_motions`](super::evaluate_motions) have their rows.
+/// `take` is called with the rows, in order and block by block; it returns whether to continue. [`QueryKind::Contacts`],
+/// [`QueryKind::Time`] and [`QueryKind::Limits`] are answered like [`QueryKind::Point`]: [`evaluate_contacts`],
+/// [`evaluate_motions`](super::evaluate_motions) and [`evaluate_limits`](super::evaluate_limits) have their rows.
 ///
 /// # Errors
 /// [`Diagnostic`] if a state does not fit the scene. States that were read for the scene's model always fit.

@@ -17,6 +17,8 @@ pub enum QueryKind {
     Contacts,
     /// The first contact of the motion to the next state.
     Time,
+    /// The joint that is farthest beyond its limits.
+    Limits,
 }
 
 /// A text that is not a query kind.
@@ -25,7 +27,7 @@ pub struct UnknownQueryKind(String);
 
 impl std::fmt::Display for UnknownQueryKind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}; write collision, distance, tolerance=0.02 (metres), point, contacts or time", self.0)
+        write!(f, "{}; write collision, distance, tolerance=0.02 (metres), point, contacts, time or limits", self.0)
     }
 }
 
@@ -34,7 +36,7 @@ impl std::error::Error for UnknownQueryKind {}
 impl FromStr for QueryKind {
     type Err = UnknownQueryKind;
 
-    /// `collision`, `distance`, `tolerance=METRES`, `point`, `contacts` or `time`.
+    /// `collision`, `distance`, `tolerance=METRES`, `point`, `contacts`, `time` or `limits`.
     ///
     /// ```
     /// use elbowroom_query::QueryKind;
@@ -48,6 +50,7 @@ impl FromStr for QueryKind {
             "point" => return Ok(Self::Point),
             "contacts" => return Ok(Self::Contacts),
             "time" => return Ok(Self::Time),
+            "limits" => return Ok(Self::Limits),
             _ => {}
         }
         let Some(number) = word.strip_prefix("tolerance") else {

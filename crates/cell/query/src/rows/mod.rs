@@ -6,6 +6,7 @@
 
 mod evaluate;
 mod kind;
+mod limits;
 mod motion;
 mod pairs;
 mod query_checker;
@@ -14,6 +15,7 @@ mod states;
 
 pub use evaluate::{BLOCK, Query, QueryEffort, evaluate, evaluate_contacts, evaluate_query};
 pub use kind::{QueryKind, UnknownQueryKind};
+pub use limits::{JointOvershoot, LimitRecord, LimitRow, evaluate_limits};
 pub use motion::{MotionRecord, MotionRow, evaluate_motions};
 pub use pairs::{QueryPairs, QueryPairsError};
 pub use query_checker::QueryChecker;

@@ -53,8 +53,8 @@ impl<'s> QueryChecker<'s> {
         each.min_by(|a, b| order(a).total_cmp(&order(b)))
     }
 
-    /// The row of one state; its index is 0. [`QueryKind::Contacts`] and [`QueryKind::Time`] are answered like
-    /// [`QueryKind::Point`].
+    /// The row of one state; its index is 0. [`QueryKind::Contacts`], [`QueryKind::Time`] and [`QueryKind::Limits`] are
+    /// answered like [`QueryKind::Point`].
     pub fn row(&mut self, state: &SceneState, kind: QueryKind) -> QueryRow {
         match kind {
             QueryKind::Collision => {
@@ -69,7 +69,7 @@ impl<'s> QueryChecker<'s> {
                     level: contact.level,
                 }
             }
-            QueryKind::Point | QueryKind::Contacts | QueryKind::Time => self.collision_point(state),
+            QueryKind::Point | QueryKind::Contacts | QueryKind::Time | QueryKind::Limits => self.collision_point(state),
             QueryKind::Distance => self.distance(state).unwrap_or_else(|| self.nothing()),
             QueryKind::Tolerance(t) => {
                 if self.within(state, t).is_none() {

@@ -184,7 +184,7 @@ impl ContactRecord {
 }
 
 /// Quoted where necessary (RFC 4180).
-fn quoted(name: &str) -> String {
+pub(super) fn quoted(name: &str) -> String {
     if name.contains([',', '"', '\n', '\r']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 

@@ -167,6 +167,11 @@ pub struct Collision {
 }
 
 impl RobotTrack {
+    /// True for a mechanism, which no monitor guards; known at the end of the run.
+    pub fn is_mechanism(&self) -> bool {
+        self.ending.outcome == Outcome::Mechanism
+    }
+
     /// The part in the governing point of a sample: a link, `tool`, `load` or `tcp`.
     pub fn governing_part(&self, sample: &Sample) -> Option<&str> {
         self.parts.get(sample.governing?.part).map(String::as_str)

@@ -26,7 +26,7 @@ pub struct Stop {
 pub struct RobotEnding {
     /// The outcome.
     pub outcome: Outcome,
-    /// Time (s) at which it stopped at its final configuration; `None` for one that finished or was still moving.
+    /// Time (s) at which it stopped at its final configuration; `None` for a robot that finished or was still moving.
     pub stopped_at_s: Option<f64>,
     /// The region or obstacle that stopped it, or what it collided with first: an object, or `robot/link`.
     pub by: Option<String>,
@@ -80,6 +80,8 @@ pub enum Outcome {
     Collided,
     /// It waits for robots that wait for it.
     Deadlock,
+    /// It is a mechanism, which moves by itself: `stopped_at_s` is the end of its motion, 0 if it did not move.
+    Mechanism,
 }
 
 impl Outcome {
@@ -91,6 +93,7 @@ impl Outcome {
             Self::Held => "held",
             Self::Collided => "collided",
             Self::Deadlock => "deadlock",
+            Self::Mechanism => "mechanism",
         }
     }
 }

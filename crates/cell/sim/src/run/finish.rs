@@ -59,7 +59,7 @@ struct Ended<'a> {
 impl Ended<'_> {
     /// The recording of a robot, with how its run ended.
     fn track(&self, robot: SimulatedRobot<'_>) -> RobotTrack {
-        let SimulatedRobot { id, setup, mut track, own_motion, guard, hold, governing, .. } = robot;
+        let SimulatedRobot { id, setup, mut track, own_motion, guard, hold, governing, present, .. } = robot;
         match own_motion {
             OwnMotion::None | OwnMotion::Cooperating(_) => {}
             OwnMotion::Avoiding(avoiding) => track.avoidance = Some(avoiding.finish()),
@@ -71,6 +71,10 @@ impl Ended<'_> {
         });
         // Collisions within one tick are found in the order of the pairs, not of time.
         track.collisions.sort_by(|a, b| a.t_s.total_cmp(&b.t_s));
+        if present.is_mechanism() {
+            track.ending = outcome::of_mechanism(&track);
+            return track;
+        }
         let region = track.samples.last().and_then(|s| s.region).map(|r| &*self.cell.regions[r.0].region.name);
         let is_deadlocked = self.deadlocks.iter().any(|d| d.robots.contains(&track.name));
         track.ending = outcome::ending(&track, is_deadlocked, region, governing.as_ref(), &setup.configuration);

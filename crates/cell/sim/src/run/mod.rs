@@ -68,10 +68,11 @@ pub struct RunOutcome {
 }
 
 impl RunOutcome {
-    /// True if a collision occurred, a forbidden region was entered, or robots are in a deadlock: exit status 1.
+    /// True if a robot collided, a forbidden region was entered, or robots are in a deadlock: exit status 1. Collisions of
+    /// mechanisms count if a robot takes part in them.
     pub fn has_violation(&self) -> bool {
         let r = &self.recording;
-        r.robots.iter().any(|r| !r.collisions.is_empty())
+        r.robots.iter().any(|r| !r.collisions.is_empty() && !r.is_mechanism())
             || r.regions.iter().any(RegionTrack::is_violated)
             || !r.deadlocks.is_empty()
     }

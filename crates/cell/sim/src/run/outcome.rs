@@ -58,6 +58,11 @@ pub(super) fn ending(
     }
 }
 
+/// Outcome of a mechanism, which no region stops.
+pub(super) fn of_mechanism(track: &RobotTrack) -> RobotEnding {
+    RobotEnding { outcome: Outcome::Mechanism, stopped_at_s: stopped_at(track), ..RobotEnding::default() }
+}
+
 /// Name of a guarded volume: the name of a link, or `tool`, `load`, `tcp`.
 pub(super) fn part_name(configuration: &Configuration, volume: VolumeId) -> Option<String> {
     configuration.volumes().get(volume.0).map(|v| v.name.clone())

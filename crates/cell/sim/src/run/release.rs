@@ -29,7 +29,7 @@ pub(super) fn release(
         });
     }
     match track.ending.outcome {
-        Outcome::Finished | Outcome::Collided => None,
+        Outcome::Finished | Outcome::Collided | Outcome::Mechanism => None,
         Outcome::Deadlock => Some("one of the robots is moved out by hand".to_owned()),
         Outcome::Held => Some(holders_leave(&blockers(cell, setup, arbiter, robot, last.region?), cell, finished)),
         Outcome::Stopped => match (last.region, last.reason) {

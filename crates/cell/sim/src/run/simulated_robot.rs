@@ -11,6 +11,7 @@ use elbowroom_robot::RobotId;
 use super::fault_injection::FaultInjector;
 use super::journal::Journal;
 use super::observer::ObservedTick;
+use super::options::RunOptions;
 use super::outcome::part_name;
 use super::override_delay::OverrideDelay;
 use super::own_motion::OwnMotion;
@@ -92,6 +93,11 @@ impl<'a> SimulatedRobot<'a> {
             track: new_track(robot, setup),
             scratch: ChainState::new(&robot.robot.chain),
         }
+    }
+
+    /// Whether the robot obeys its monitor's override; a mechanism never does.
+    pub fn obeys(&self, options: &RunOptions) -> bool {
+        options.apply_override && !self.present.is_mechanism()
     }
 
     /// Whether the robot is on its programmed path.
@@ -232,7 +238,7 @@ impl<'a> SimulatedRobot<'a> {
 fn new_track(robot: &CellRobot, setup: &MonitorSetup) -> RobotTrack {
     RobotTrack {
         name: robot.name.clone(),
-        flange: robot.robot.chain.links()[robot.flange.0].clone(),
+        flange: if robot.is_mechanism() { String::new() } else { robot.robot.chain.links()[robot.flange.0].clone() },
         joints: robot.joint_names(),
         parts: setup.configuration.volumes().iter().map(|v| v.name.clone()).collect(),
         absent_links: absent_links(robot).into_iter().map(|links| (0.0, links)).collect(),

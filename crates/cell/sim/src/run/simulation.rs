@@ -152,13 +152,13 @@ impl Simulation<'_> {
         }
         let sources = frames.sources(&robot.setup.sources, states, t_s);
         let Some(report) = robot.tick_monitor(t_s, state, &sources, fault_injector, journal) else {
-            if options.apply_override && !fault_injector.keeps_last_override(robot.id, t_s) {
+            if robot.obeys(options) && !fault_injector.keeps_last_override(robot.id, t_s) {
                 robot.applied = 0.0;
             }
             return robot.record(cell, t_s, state, &Governed::STALE);
         };
         let programmed = robot.programmed_override();
-        robot.applied = if options.apply_override { report.speed_override.min(programmed) } else { programmed };
+        robot.applied = if robot.obeys(options) { report.speed_override.min(programmed) } else { programmed };
         robot.governing = report.governing;
         journal.monitor_events(t_s, robot.id, &robot.monitor, robot.setup);
         // A region governs if it makes the robot slower than programmed.

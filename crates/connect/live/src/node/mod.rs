@@ -76,6 +76,7 @@ pub struct NodeParts {
 
 /// A running node. It ends when it is dropped.
 pub struct Node {
+    is_guard: bool,
     inbox: Arc<Inbox>,
     outbox: Arc<Outbox>,
     threads: Vec<JoinHandle<()>>,
@@ -85,7 +86,12 @@ pub struct Node {
 }
 
 impl Node {
-    /// Starts to guard a robot.
+    /// Whether it guards a robot: the node of a mechanism reads its joint values, for those who show it.
+    pub(crate) fn is_guard(&self) -> bool {
+        self.is_guard
+    }
+
+    /// Starts to guard a robot, or to read a mechanism.
     ///
     /// # Errors
     /// [`NetworkError`] if a key cannot be used.
@@ -95,6 +101,7 @@ impl Node {
     pub fn start(parts: NodeParts) -> Result<Self, NetworkError> {
         let NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder, versions } = parts;
         let (keys, name) = (Keys::new(&cell.name), cell.robots[robot.0].name.clone());
+        let is_guard = !cell.robots[robot.0].is_mechanism();
         let followed: Vec<bool> = (0..cell.robots.len()).map(|r| follows(&setup, RobotId(r))).collect();
         let (state, sample) = (ChainState::new(setup.configuration.chain()), StatusSample::new(monitor.monitor()));
         let mut tick = NodeTick::new(cell.clone(), setup, monitor, checksum, recorder);
@@ -129,7 +136,7 @@ impl Node {
             std::thread::Builder::new().name(format!("send {name}")).spawn(move || sender.run(&sending)),
         ];
         let threads = threads.into_iter().map(|thread| thread.expect("the system gives no thread")).collect();
-        Ok(Self { inbox, outbox, threads, _subscriptions: subscriptions, _networks: [network, interlocks] })
+        Ok(Self { is_guard, inbox, outbox, threads, _subscriptions: subscriptions, _networks: [network, interlocks] })
     }
 }
 

@@ -30,7 +30,7 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Starts to watch these robots; all robots of the cell if `robots` is empty.
+    /// Starts to watch these robots; all robots of the cell but the mechanisms if `robots` is empty.
     ///
     /// # Errors
     /// The setting that cannot be used.
@@ -46,9 +46,15 @@ impl Watchdog {
         if let Some(name) = robots.iter().find(|name| !known().any(|k| k == **name)) {
             return Err(Ros2Error::Unknown { name: name.clone(), known: known().collect() });
         }
-        let watched = known().filter(|name| robots.is_empty() || robots.contains(name));
-        let watched: Vec<Ros2Robot> =
-            watched.map(|name| settings.robot(&name).cloned().unwrap_or_else(|| Ros2Robot::of(&name))).collect();
+        let watched: Vec<String> = if robots.is_empty() {
+            cell.guarded_robots().map(|robot| cell.robots[robot.0].name.clone()).collect()
+        } else {
+            known().filter(|name| robots.contains(name)).collect()
+        };
+        let watched: Vec<Ros2Robot> = watched
+            .into_iter()
+            .map(|name| settings.robot(&name).cloned().unwrap_or_else(|| Ros2Robot::of(&name)))
+            .collect();
         let is_closed = Arc::new(AtomicBool::new(false));
         let (closed, distribution, report) = (is_closed.clone(), settings.distribution, on_event.clone());
         let worker = Worker::start(settings, NODE, on_event, move |session| {

@@ -48,7 +48,7 @@ fn encode(robot: u32, configuration: &Configuration) -> msgs::MonitorConfigurati
 
 fn joint(joint: &Joint) -> msgs::ChainJoint {
     let Joint { name, kind, parent, child, origin, axis, limits, mimic } = joint;
-    let Limits { lower, upper, velocity, acceleration, effort } = *limits;
+    let Limits { lower, upper, velocity, acceleration, effort, overshoot_tolerance } = *limits;
     msgs::ChainJoint {
         name: name.clone(),
         kind: match kind {
@@ -66,6 +66,7 @@ fn joint(joint: &Joint) -> msgs::ChainJoint {
         velocity: velocity.into_iter().collect(),
         acceleration: acceleration.into_iter().collect(),
         effort: effort.into_iter().collect(),
+        overshoot_tolerance: overshoot_tolerance.into_iter().collect(),
         mimic_joint: mimic.iter().map(|m| index(m.joint.0)).collect(),
         mimic_multiplier: mimic.map_or(0.0, |m| m.multiplier),
         mimic_offset: mimic.map_or(0.0, |m| m.offset),
@@ -226,6 +227,7 @@ fn read_joint(message: &msgs::ChainJoint) -> Result<Joint, ConfigurationDefect> 
             velocity: one(&message.velocity),
             acceleration: one(&message.acceleration),
             effort: one(&message.effort),
+            overshoot_tolerance: one(&message.overshoot_tolerance),
         },
         mimic,
     })

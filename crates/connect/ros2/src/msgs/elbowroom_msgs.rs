@@ -48,6 +48,8 @@ message! {
         acceleration: Vec<f64>,
         /// Largest effort; empty if unknown.
         effort: Vec<f64>,
+        /// Largest plausible overshoot of its limits by a reading, rad or m; empty if unknown.
+        overshoot_tolerance: Vec<f64>,
         /// Index of the joint that it follows; empty for an independent joint.
         mimic_joint: Vec<u32>,
         /// Multiplier of that joint's position.

@@ -55,8 +55,12 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
     let checksum = cell.approval.checksum.clone();
     let service = Service::start(cell, &options).map_err(|e| Failure::Wrong(e.to_string()))?;
     let address = args.network.listen.as_deref().or(args.network.connect.as_deref()).unwrap_or(DEFAULT_ADDRESS);
+    let mechanisms = match service.mechanisms() {
+        0 => String::new(),
+        count => format!(", {count} mechanism(s) read"),
+    };
     note(format_args!(
-        "{} robot(s) guarded{}, {address}, configuration {}\nstatus: {}",
+        "{} robot(s) guarded{mechanisms}{}, {address}, configuration {}\nstatus: {}",
         service.guarded(),
         if service.is_arbiter() { ", arbiter" } else { "" },
         checksum.get(..16).unwrap_or_default(),

@@ -154,6 +154,11 @@ impl Hasher {
             s.number(joint.limits.lower);
             s.number(joint.limits.upper);
             s.optional(joint.limits.velocity);
+            // Chains without tolerances hash as before there were any, so that their seals stay valid.
+            if let Some(tolerance) = joint.limits.overshoot_tolerance {
+                s.tag(2);
+                s.number(tolerance);
+            }
             s.flag(joint.mimic.is_some());
             if let Some(mimic) = &joint.mimic {
                 s.count(mimic.joint.0);

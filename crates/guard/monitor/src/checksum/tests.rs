@@ -101,7 +101,7 @@ fn top() -> Vec<Named> {
 fn of_chain() -> Vec<Named> {
     let chain = configuration().chain;
     let Joint { name: _, kind: _, parent: _, child: _, origin: _, axis: _, limits, mimic } = chain.joints()[2].clone();
-    let Limits { lower: _, upper: _, velocity: _, acceleration: _, effort: _ } = limits;
+    let Limits { lower: _, upper: _, velocity: _, acceleration: _, effort: _, overshoot_tolerance: _ } = limits;
     let Mimic { joint: _, multiplier: _, offset: _ } = mimic.unwrap();
     vec![
         ("link name", |c| {
@@ -128,6 +128,8 @@ fn of_chain() -> Vec<Named> {
         ("velocity", |c| joint(c, 1, |j| j.limits.velocity = Some(1.0 + 1e-9))),
         ("velocity unknown", |c| joint(c, 1, |j| j.limits.velocity = None)),
         ("velocity 0", |c| joint(c, 1, |j| j.limits.velocity = Some(0.0))),
+        ("overshoot", |c| joint(c, 1, |j| j.limits.overshoot_tolerance = Some(0.05))),
+        ("overshoot 0", |c| joint(c, 1, |j| j.limits.overshoot_tolerance = Some(0.0))),
         ("mimic removed", |c| joint(c, 2, |j| j.mimic = None)),
         ("mimic of another", |c| joint(c, 2, |j| j.mimic = j.mimic.map(|m| Mimic { joint: JointId(1), ..m }))),
         ("mimic multiplier", |c| joint(c, 2, |j| j.mimic = j.mimic.map(|m| Mimic { multiplier: 2.1, ..m }))),

@@ -139,7 +139,7 @@ impl UrdfParser<'_> {
             node.attributes().find(|a| a.name() == "acceleration").and_then(|a| a.value().trim().parse().ok());
         let acceleration = acceleration.filter(|a: &f64| a.is_finite() && *a > 0.0);
         let effort = self.number(node, "effort")?.filter(|&e| e > 0.0);
-        Ok(Limits { lower, upper, velocity, acceleration, effort })
+        Ok(Limits { velocity, acceleration, effort, ..Limits::range(lower, upper) })
     }
 
     fn bounds(&mut self, node: Node<'_, '_>, name: &str) -> Result<(f64, f64), Diagnostic> {

@@ -32,6 +32,7 @@ pub(in crate::file) const SOLIDS: &[Variant] = &[
 #[rustfmt::skip] // a row per key, as in the document
 pub(in crate::file) const ROBOT: &[Key] = &[
     key("model", "path", "`model` or `dh` required", "a URDF, or a 3DS, GLB, glTF or VRML model: [models](models.md)"),
+    key("kind", "`\"robot\"` `\"mechanism\"`", "`\"robot\"`", "a [mechanism](#mechanisms) moves and is an obstacle; no monitor guards it"),
     key("srdf", "path", "none", "a file whose disabled pairs are never tested for collision; with `dh` the links are `link_1`, `link_2`, …"),
     key("ignore", "pairs of links", "none", "pairs never tested for collision: `[[\"link_4\", \"link_6\"]]`, for links that always touch"),
     key("joints", "path", "`MODEL.joints.toml` beside it, if it exists", "which nodes of a 3DS, glTF or VRML model move"),
@@ -50,6 +51,7 @@ pub(in crate::file) const ROBOT: &[Key] = &[
     key("speed", "number or one per joint", "the model's; else 180 deg/s, 1 m/s, with a warning", "highest joint speed"),
     key("acceleration", "number or one per joint", "the model's; else full speed in 0.25 s, typical of industrial arms", "of programmed moves"),
     key("jerk", "number or one per joint", "full acceleration in 0.1 s", "of programmed moves"),
+    key("overshoot", "number or one per joint", "0.05 rad, 0.05 m", "how far a reading may be beyond the joint limits before the [monitor](laws.md#9-watchdog) stops the robot; 0 for not at all"),
     key("stop_time", "seconds", "0.1: a hard but category-1 stop", "time from full speed to rest when the override falls"),
 ];
 
