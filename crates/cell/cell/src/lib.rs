@@ -86,6 +86,7 @@ pub use drawn_fixture::{DrawnFixture, DrawnTarget, MOST_DRAWN_POINTS};
 pub use elbowroom_access as access;
 pub use elbowroom_cooperation as cooperation;
 pub use elbowroom_shared_control as shared_control;
+pub use fence::FenceWall;
 pub use file::{CellFile, QUATERNION_TOLERANCE, key_reference};
 pub use fixture::{CellFixture, CellGuide, FixtureTool, ShieldSource};
 pub use fixture_editor::{FixtureDraft, FixtureEditor};

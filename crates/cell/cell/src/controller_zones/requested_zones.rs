@@ -3,12 +3,13 @@
 use elbowroom_monitor::{Guards, Region, RegionKind};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
+use elbowroom_spatial::Vec3;
 
 use super::region_zones::RegionZones;
 use super::zone::{ReachBall, Side, Zone, ZoneSolid};
 use super::zone_frame::ZoneFrame;
 use crate::reach::Reach;
-use crate::{Cell, CellRegion, CellRegionId, Follow, RegionSolid, Units};
+use crate::{Cell, CellRegion, CellRegionId, FenceWall, Follow, RegionSolid, Units};
 
 /// By how much boxes of planes exceed the reach of the robot, m: a longer tool of the controller is covered, too.
 const BEYOND_REACH_M: f64 = 1.0;
@@ -126,17 +127,25 @@ fn solids(region: &CellRegion, frame: &ZoneFrame, ball: ReachBall) -> Vec<NamedS
         RegionSolid::Shape => whole(shape, Side::Inside),
         RegionSolid::AllBut(kept_in) => whole(kept_in, Side::Outside),
         RegionSolid::Walls(walls) => {
-            let wall = |(index, (cuboid, in_world)): (usize, &_)| {
-                let in_frame = frame.in_world.inverse_mul(in_world);
-                (
-                    format!("part {} of its walls", index + 1),
-                    ZoneSolid::new(&Shape::Cuboid(*cuboid), in_frame, ball),
-                    Side::Inside,
-                )
+            let wall = |(index, wall): (usize, &FenceWall)| {
+                let in_frame = frame.in_world.inverse_mul(&wall.in_world);
+                let inwards = direction(frame.in_world.inverse_transform_vector(-wall.outwards));
+                let part = format!("part {} of its walls (the inside of the fence is towards {inwards})", index + 1);
+                (part, ZoneSolid::new(&Shape::Cuboid(wall.solid), in_frame, ball), Side::Inside)
             };
             walls.iter().enumerate().map(wall).collect()
         }
     }
+}
+
+/// A direction as an axis, or as its coordinates.
+fn direction(v: Vec3) -> String {
+    let is_axis = |i: &usize| v.to_array()[*i].abs() > 1.0 - 1e-9;
+    if let Some(i) = (0..3).find(is_axis) {
+        return format!("{}{}", if v.to_array()[i] > 0.0 { '+' } else { '-' }, ["X", "Y", "Z"][i]);
+    }
+    let [x, y, z] = v.to_array().map(|c| format!("{:.3}", (c * 1e3).round() * 1e-3 + 0.0));
+    format!("[{x},{y},{z}]")
 }
 
 fn source(cell: &Cell, follow: Follow) -> String {

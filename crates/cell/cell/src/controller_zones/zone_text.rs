@@ -5,17 +5,26 @@ use elbowroom_robot::RobotId;
 use super::region_zones::RegionZones;
 use super::zone::Zone;
 use super::zone_frame::ZoneFrame;
-use crate::Cell;
+use crate::{Cell, RegionSolid};
 
 /// Printable ASCII, one line: names of a cell may have any character, and comments of a controller may not.
 pub(super) fn ascii(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '?' }).collect()
 }
 
+/// What a fence is for a controller.
+const NOTE_OF_FENCES: [&str; 2] = [
+    "The zones of a fence are its walls: each stops the robot in the wall, and both sides of it are free. A robot that is",
+    "outside already is not stopped: start on the side that the comment of each wall names, in this frame.",
+];
+
 /// The first comments: whose zones these are, in which frame, and what no zone does.
 pub(super) fn head(cell: &Cell, robot: RobotId, frame: &ZoneFrame) -> Vec<String> {
+    let is_fence = |r: &crate::CellRegion| matches!(r.solid, RegionSolid::Walls(_)) && r.robots.contains(&robot);
+    let has_fence = cell.regions.iter().any(is_fence);
     let robot = &cell.robots[robot.0];
     let frame = frame.title();
+    let of_fences = NOTE_OF_FENCES.iter().filter(|_| has_fence).map(|line| (*line).to_owned());
     [
         format!("Zones of robot \"{}\", from the regions of the cell \"{}\".", robot.name, cell.name),
         format!("Written by elbowroom {}.", env!("CARGO_PKG_VERSION")),
@@ -26,8 +35,9 @@ pub(super) fn head(cell: &Cell, robot: RobotId, frame: &ZoneFrame) -> Vec<String
         "Move the robot slowly to the border of each zone before you rely on it. Not a certified safety function."
             .to_owned(),
     ]
-    .iter()
-    .map(|line| ascii(line))
+    .into_iter()
+    .chain(of_fences)
+    .map(|line| ascii(&line))
     .collect()
 }
 
