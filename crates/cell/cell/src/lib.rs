@@ -104,7 +104,7 @@ pub use payload::Payload;
 pub use poses::{PoseRate, PoseTrack};
 pub use program::{KeptAxis, MoveTarget, PathPlanner, Program, ProgramBody, ProgramStep, StepAction, TcpTarget};
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
-pub use region_edits::{EditedRegions, RegionEdit, table_changes, why_not_continued};
+pub use region_edits::{EditedRegions, RegionEdit, cell_with_only, table_changes, why_not_continued};
 pub use region_id::CellRegionId;
 pub use sensor::{CellSensor, SensorKind};
 pub use shield_report::ShieldReport;
