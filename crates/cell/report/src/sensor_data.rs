@@ -49,7 +49,7 @@ fn kept(corners: &[usize], appears: &[bool], most: usize) -> (usize, Vec<usize>)
         || std::iter::successors(Some(1_usize), |step| Some(step * 2)).take_while(|step| *step <= corners.len());
     for keeps_changes in [true, false] {
         for step in steps() {
-            let is_kept = |i: &usize| i % step == 0 || (keeps_changes && appears[*i]);
+            let is_kept = |i: &usize| i.is_multiple_of(step) || (keeps_changes && appears[*i]);
             let kept: Vec<usize> = (0..corners.len()).filter(is_kept).collect();
             if kept.iter().map(|i| corners[*i]).sum::<usize>() <= most {
                 return (step, kept);
