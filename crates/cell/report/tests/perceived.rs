@@ -51,7 +51,7 @@ fn page(cell: &Cell, run: &Recording) -> String {
 fn known(run: &Recording, t_s: f64) -> Option<&WatchRecord> {
     let sensor = &run.sensors[0];
     let usable = |r: &&WatchRecord| r.status == WatchStatus::Accepted && r.t_s + sensor.latency_s <= t_s + 1e-9;
-    sensor.records.iter().filter(usable).next_back()
+    sensor.records.iter().rfind(usable)
 }
 
 /// Lowest and highest corner of the prism of an obstacle, m.
@@ -72,7 +72,7 @@ fn are_near(found: &Value, exact: [f64; 3]) -> bool {
 fn the_scene_shows_what_the_camera_saw_while_it_saw_it() {
     let Some(chromium) = chromium() else { return };
     let (cell, run) = crate_run();
-    let times: Vec<f64> = (0..).map(|i| 0.05 + 0.35 * f64::from(i)).take_while(|t| *t < run.duration_s).collect();
+    let times: Vec<f64> = (0..1000).map(|i| 0.05 + 0.35 * f64::from(i)).take_while(|t| *t < run.duration_s).collect();
     let person = PERSON.replace("TIMES", &json!(times).to_string());
     let page = page(&cell, &run).replace("</body>", &format!("{person}</body>"));
     let seen = seen(&chromium, &folder("perceived"), &page, 1280);
