@@ -1,6 +1,7 @@
 //! What the texts of all languages say in comments.
 
 use elbowroom_robot::RobotId;
+use elbowroom_spatial::Vec3;
 
 use super::region_zones::RegionZones;
 use super::zone::Zone;
@@ -53,7 +54,19 @@ pub(super) fn missing(regions: &[RegionZones<'_>]) -> Vec<String> {
 /// A comment that names the region, the part, and what the zone does.
 pub(super) fn title(zones: &RegionZones<'_>, zone: &Zone) -> String {
     let part = if zone.part.is_empty() { String::new() } else { format!(", {}", zone.part) };
+    let inwards = zone.inwards.map(|v| format!(" (the inside of the fence is towards {})", direction(v)));
+    let part = part + &inwards.unwrap_or_default();
     let life = if zones.is_temporary() { ", temporary" } else { "" };
     let kind = zones.region.region.kind.name();
     ascii(&format!("region \"{}\"{part}: {kind}{life}", zones.name()))
+}
+
+/// A direction as an axis, or as its coordinates.
+fn direction(v: Vec3) -> String {
+    let is_axis = |i: &usize| v.to_array()[*i].abs() > 1.0 - 1e-9;
+    if let Some(i) = (0..3).find(is_axis) {
+        return format!("{}{}", if v.to_array()[i] > 0.0 { '+' } else { '-' }, ["X", "Y", "Z"][i]);
+    }
+    let [x, y, z] = v.to_array().map(|c| format!("{:.3}", (c * 1e3).round() * 1e-3 + 0.0));
+    format!("[{x},{y},{z}]")
 }
