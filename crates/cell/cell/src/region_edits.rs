@@ -175,6 +175,7 @@ impl EditedRegions {
 /// units = { length = "mm", angle = "deg" }
 /// [robot.rail]
 /// dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+/// links = [{ sphere = { radius = 50 } }]
 /// [region.table]
 /// shape = "sphere"
 /// centre = [0, 0, 2500]
@@ -449,6 +450,7 @@ kind = "exchange"
         assert!(matches!(cell_with_only(&cell, "yard", fence).unwrap().regions[0].solid, RegionSolid::Walls(_)));
         let cases = [
             ("cart", "shape = \"cube\"", "cube"),
+            ("cart", "shape = \"sphere\"\ncentre = [0, 0, 1]\nradius = 5\nguards = [\"tool\"]", "guards nothing"),
             ("cart", fence, "`fence` is not the table of the region `cart` alone"),
             ("yard", "[fence.yard]\ncorners = [[0, 0], [1000, 0]]\nheight = 2000", "2 corners, not 3 to 500"),
             ("cart", "shape = \"mesh\"\nmesh = \"../../etc/passwd\"\nat = [0, 0, 0]", "outside of the cell's folder"),

@@ -5,8 +5,8 @@ use elbowroom_formats::toml_tables::{Data, Entry, Node, Table};
 
 use super::definitions::Definitions;
 use super::document::REGION_TABLES;
-use super::region;
-use crate::{Cell, CellRegion, PoseTrack};
+use super::{guarding, region};
+use crate::{Cell, CellRegion, CellRegionId, PoseTrack};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -30,7 +30,7 @@ pub(super) fn read(
     Ok((regions, known.pose_tracks))
 }
 
-/// The cell with one region in place of its own. Nothing else is read or checked again.
+/// The cell with one region in place of its own. Only this region is read, and checked against what it guards.
 ///
 /// # Errors
 /// [`Diagnostic`] for the keys of the region.
@@ -42,5 +42,8 @@ pub(crate) fn with_only_region(cell: &Cell, name: &str, is_fence: bool, keys: Ve
     let (regions, pose_tracks) = read(&root, cell, &mut Vec::new())?;
     let mut alone = Cell { regions, ..cell.clone() };
     alone.frame_sources.pose_tracks = pose_tracks;
+    for (t, index) in region::tables(&root)?.into_iter().zip(0..) {
+        guarding::check(&t.table, &alone, CellRegionId(index), &mut Vec::new())?;
+    }
     Ok(alone)
 }
