@@ -148,7 +148,7 @@ points are there, the distance is from what they determine. A fence takes corner
 Examples:
   elbowroom control teach trolley --robot left --shape box --secret panel.secret >> cell.toml
   elbowroom control teach trolley --robot left --shape box --warning 200 --add --secret panel.secret
-  elbowroom control teach yard --robot left --shape fence --height 2000 --secret p.secret >> cell.toml"
+  elbowroom control teach yard --robot left --shape fence --height 2000 --secret panel.secret"
 )]
 pub(crate) struct TeachAtRobotArgs {
     /// Name of the region
