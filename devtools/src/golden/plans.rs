@@ -25,7 +25,7 @@ pub fn groups(data: &Path, seeds: usize) -> Result<Vec<HashedGroup>, String> {
 /// Returns a group for each set of a file.
 fn of_file(file: ProblemFile, seeds: usize) -> Result<Vec<HashedGroup>, String> {
     let ProblemFile { name, file, urdf, robot, problems } = file;
-    let model = ProblemModel::new(&urdf, robot, &file, &problems).map_err(|e| e.to_string())?;
+    let model = ProblemModel::new(&urdf, robot, &[], &file, &problems).map_err(|e| e.to_string())?;
     let sets: Vec<&[PlanningProblem]> = problems.chunk_by(|a, b| a.set == b.set).collect();
     // The covers are the same for all problems of most files.
     let mut engine = BoundedEngine::default();

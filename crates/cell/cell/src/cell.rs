@@ -6,14 +6,14 @@ use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
 use elbowroom_monitor::{Grid, Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
-use elbowroom_proximity::{Cuboid, Shape};
+use elbowroom_proximity::Shape;
 use elbowroom_robot::{ObjectId, Robot, RobotId};
 use elbowroom_scene::{Object, PairRules};
 use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
-use crate::{CellSensor, CellTool, Encoder, Guidance, MovingObject, Payload, PoseTrack, Program};
+use crate::{CellSensor, CellTool, Encoder, FenceWall, Guidance, MovingObject, Payload, PoseTrack, Program};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -196,8 +196,8 @@ pub enum RegionSolid {
     Shape,
     /// Everything outside of this shape, in the frame of the region's shape: `keep = "inside"`.
     AllBut(Shape),
-    /// The walls of a fence, with their poses in the world.
-    Walls(Vec<(Cuboid, Pose)>),
+    /// The walls of a fence.
+    Walls(Vec<FenceWall>),
 }
 
 /// The source that a dynamic region follows.

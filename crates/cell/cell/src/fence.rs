@@ -31,6 +31,17 @@ pub(crate) struct Fence {
     pub gates: Vec<Gate>,
 }
 
+/// A part of a wall of a fence: between, below or above gates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FenceWall {
+    /// Its solid.
+    pub solid: Cuboid,
+    /// Pose of the solid's centre in the world.
+    pub in_world: Pose,
+    /// Horizontal direction in the world, of length 1, from the inside of the fence through the wall.
+    pub outwards: Vec3,
+}
+
 /// An opening in a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Gate {
@@ -117,11 +128,11 @@ struct Panel {
 }
 
 impl Fence {
-    /// The walls as boxes with their poses in the world: one for each part between, below and above gates.
+    /// The walls as boxes: one for each part between, below and above gates.
     ///
     /// # Errors
     /// [`FenceError`]: walls that cross or would reach into the fence, and gates that are not in a wall.
-    pub fn boxes(&self) -> Result<Vec<(Cuboid, Pose)>, FenceError> {
+    pub fn boxes(&self) -> Result<Vec<FenceWall>, FenceError> {
         let walls = self.walls()?;
         let gates = self.gates_of(&walls)?;
         let of_wall = |(index, wall): (usize, &Wall)| -> Vec<_> {
@@ -236,25 +247,29 @@ impl Fence {
         wall.length_m + 1.01 * notch_m
     }
 
-    fn solid(&self, wall: &Wall, panel: &Panel) -> (Cuboid, Pose) {
+    fn solid(&self, wall: &Wall, panel: &Panel) -> FenceWall {
         let middle = wall.point(0.5 * (panel.along_m[0] + panel.along_m[1]), 0.5 * self.thickness_m);
         let length_m = panel.along_m[1] - panel.along_m[0] + 2.0 * OVERLAP_M;
         let size = Vec3::new(length_m, self.thickness_m, panel.heights_m[1] - panel.heights_m[0]);
         let at = Vec3::new(middle.x, middle.y, 0.5 * (panel.heights_m[0] + panel.heights_m[1]));
         let rotation = Rotation::from_rpy(0.0, 0.0, wall.along.y.atan2(wall.along.x));
-        (Cuboid { half_extents: size * 0.5 }, Pose::new(rotation, at))
+        FenceWall {
+            solid: Cuboid { half_extents: size * 0.5 },
+            in_world: Pose::new(rotation, at),
+            outwards: Vec3::new(wall.outwards.x, wall.outwards.y, 0.0),
+        }
     }
 }
 
-/// Boxes as one mesh in the world.
+/// The walls as one mesh in the world.
 ///
 /// # Errors
 /// [`MeshError`] if there are none, or if they are too large.
-pub(crate) fn mesh_of_boxes(boxes: &[(Cuboid, Pose)]) -> Result<TriMesh, MeshError> {
+pub(crate) fn mesh_of_walls(walls: &[FenceWall]) -> Result<TriMesh, MeshError> {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for (cuboid, in_world) in boxes {
+    for FenceWall { solid, in_world, .. } in walls {
         let first = vertices.len() as u32;
-        let (corners, sides) = tessellate(&Shape::Cuboid(*cuboid), 1e-3);
+        let (corners, sides) = tessellate(&Shape::Cuboid(*solid), 1e-3);
         vertices.extend(corners.into_iter().map(|corner| in_world.transform_point(corner)));
         triangles.extend(sides.iter().map(|side| side.map(|i| i + first)));
     }
@@ -280,7 +295,7 @@ mod tests {
     const L: [(f64, f64); 6] = [(-2.0, -2.0), (2.0, -2.0), (2.0, 0.0), (0.0, 0.0), (0.0, 2.0), (-2.0, 2.0)];
 
     fn mesh_of(fence: &Fence) -> Result<TriMesh, FenceError> {
-        Ok(mesh_of_boxes(&fence.boxes()?)?)
+        Ok(mesh_of_walls(&fence.boxes()?)?)
     }
 
     fn distance(mesh: &TriMesh, p: Vec3) -> f64 {
@@ -319,6 +334,27 @@ mod tests {
                 }
             }
             assert!((distance(&mesh, Vec3::new(-1.0, -1.0, 2.5)) - 1.0_f64.hypot(0.5)).abs() < 2e-6);
+        }
+    }
+
+    #[test]
+    fn every_part_of_a_wall_knows_which_side_is_inside() {
+        for reversed in [false, true] {
+            let mut fence = fence(&L);
+            if reversed {
+                fence.corners.reverse();
+            }
+            let ends = [Point2::new(2.0, -0.5), Point2::new(2.0, -1.5)];
+            fence.gates = vec![Gate { ends, heights_m: [0.8, 1.4] }];
+            let walls = fence.boxes().unwrap();
+            assert_eq!(walls.len(), 6 + 3);
+            for FenceWall { in_world, outwards, .. } in walls {
+                let beside = |metres: f64| {
+                    let p = in_world.translation + outwards * metres;
+                    polygon::contains(&fence.corners, Point2::new(p.x, p.y))
+                };
+                assert!(beside(-0.1) && !beside(0.1) && (outwards.length() - 1.0).abs() < 1e-12, "{in_world:?}");
+            }
         }
     }
 

@@ -8,6 +8,7 @@ use elbowroom_formats::toml_tables::{self, Data, Entry, Node};
 use elbowroom_monitor::{Life, RegionKind};
 use serde::{Deserialize, Serialize};
 
+use crate::file::{REGION_TABLES, with_only_region};
 use crate::seal::value::{key, text};
 use crate::{Cell, CellFile, CellRegion, Follow, configure};
 
@@ -124,22 +125,14 @@ impl EditedRegions {
     /// [`Diagnostic`] if it is not TOML, another region's table, or names a file outside of the cell's folder.
     pub fn table_of(&self, name: &str, toml: &str) -> Result<String> {
         let path = &self.file.file;
-        let mut entries = toml_tables::parse(path, toml)?;
-        if let [Entry { key, node: Node { data: Data::Table(tables), .. }, .. }] = &entries[..]
-            && key == "region"
-        {
-            match &tables[..] {
-                [Entry { key, node: Node { data: Data::Table(keys), .. }, .. }] if key == name => {
-                    entries = keys.clone();
-                }
-                _ => {
-                    let what = format!("`region` is not the table of the region `{name}` alone");
-                    return Err(Diagnostic::new(path, None, what).hint(format!("[region.{name}] and its keys")));
-                }
-            }
+        let (is_fence, entries) = keys_of_region(path, name, toml)?;
+        if is_fence {
+            let what =
+                format!("`fence` is not the table of the region `{name}`: fences are not added while the cell runs");
+            let help = format!("[region.{name}] and its keys; or the fence in the cell file");
+            return Err(Diagnostic::new(path, None, what).hint(help));
         }
         // A table within would be written as a line of its own all the same.
-        check_files(path, &entries)?;
         Ok(lines(&entries))
     }
 
@@ -168,6 +161,60 @@ impl EditedRegions {
         }
         Ok(lines(&keys))
     }
+}
+
+/// A running cell with one region in place of its own: a region that is being taught, or a part of it. The rest of the
+/// cell is as it is; only the region is read.
+///
+/// `toml` has the keys of `[region.NAME]`, that table itself, or the table `[fence.NAME]`.
+///
+/// ```
+/// use elbowroom_cell::{Cell, cell_with_only};
+/// let cell = Cell::parse("rail.toml", r#"
+/// version = 1
+/// units = { length = "mm", angle = "deg" }
+/// [robot.rail]
+/// dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+/// links = [{ sphere = { radius = 50 } }]
+/// [region.table]
+/// shape = "sphere"
+/// centre = [0, 0, 2500]
+/// radius = 100
+/// warning = 100
+/// "#)?;
+/// let fence = "[fence.yard]\ncorners = [[-900, -900], [900, -900], [900, 900]]\nheight = 2000";
+/// let alone = cell_with_only(&cell, "yard", fence)?;
+/// assert_eq!((alone.regions.len(), alone.regions[0].table().as_str()), (1, "[fence.yard]"));
+/// # Ok::<(), elbowroom_formats::Diagnostic>(())
+/// ```
+///
+/// # Errors
+/// [`Diagnostic`] as for a cell file; lines are counted in the region's own keys.
+pub fn cell_with_only(cell: &Cell, name: &str, toml: &str) -> Result<Cell> {
+    let (is_fence, keys) = keys_of_region(&cell.file, name, toml)?;
+    with_only_region(cell, name, is_fence, keys)
+}
+
+/// The keys of a region that is given by them or by its table, and whether the table is a fence's.
+fn keys_of_region(path: &Path, name: &str, toml: &str) -> Result<(bool, Vec<Entry>)> {
+    let mut entries = toml_tables::parse(path, toml)?;
+    let mut is_fence = false;
+    if let [Entry { key: word, node: Node { data: Data::Table(tables), .. }, .. }] = &entries[..]
+        && REGION_TABLES.contains(&word.as_str())
+    {
+        match &tables[..] {
+            [Entry { key, node: Node { data: Data::Table(keys), .. }, .. }] if key == name => {
+                is_fence = word != REGION_TABLES[0];
+                entries = keys.clone();
+            }
+            _ => {
+                let what = format!("`{word}` is not the table of the region `{name}` alone");
+                return Err(Diagnostic::new(path, None, what).hint(format!("[{word}.{name}] and its keys")));
+            }
+        }
+    }
+    check_files(path, &entries)?;
+    Ok((is_fence, entries))
 }
 
 /// Hint with the keys that a move of this region may have.
@@ -293,6 +340,7 @@ fn permanent_that_differs<'a>(now: &'a Cell, next: &Cell) -> Option<&'a str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::RegionSolid;
 
     const FILE: &str = r#"
 version = 1
@@ -383,6 +431,37 @@ kind = "exchange"
         {
             assert!(file.moved("end", &end, to).unwrap_err().to_string().contains(expected), "{to}");
         }
+    }
+
+    #[test]
+    fn a_region_alone_is_the_one_that_the_whole_cell_would_have() {
+        let (file, cell) = (edited(), edited().cell(&[]).unwrap());
+        for toml in [CART.to_owned(), format!("[region.cart]\n{CART}")] {
+            let alone = cell_with_only(&cell, "cart", &toml).unwrap();
+            let table = file.table_of("cart", &toml).unwrap();
+            let whole = file.cell(&file.with(&[], edit("cart", Some(&table)))).unwrap();
+            let (own, expected) = (&alone.regions[0], &whole.regions[3]);
+            assert_eq!((alone.regions.len(), own.region.checksum()), (1, expected.region.checksum()));
+            assert_eq!((&own.robots, own.follow), (&expected.robots, expected.follow));
+        }
+        // A name that the cell has is the new region's, too.
+        assert_eq!(cell_with_only(&cell, "end", CART).unwrap().regions[0].region.life, Life::Temporary);
+        let fence = "[fence.yard]\ncorners = [[0, 0], [1000, 0], [0, 1000]]\nheight = 2000";
+        assert!(matches!(cell_with_only(&cell, "yard", fence).unwrap().regions[0].solid, RegionSolid::Walls(_)));
+        let cases = [
+            ("cart", "shape = \"cube\"", "cube"),
+            ("cart", "shape = \"sphere\"\ncentre = [0, 0, 1]\nradius = 5\nguards = [\"tool\"]", "guards nothing"),
+            ("cart", fence, "`fence` is not the table of the region `cart` alone"),
+            ("yard", "[fence.yard]\ncorners = [[0, 0], [1000, 0]]\nheight = 2000", "2 corners, not 3 to 500"),
+            ("cart", "shape = \"mesh\"\nmesh = \"../../etc/passwd\"\nat = [0, 0, 0]", "outside of the cell's folder"),
+            ("cart", "shape = \"sphere\"\ncentre = [0, 0, 1]\nradius = 5\nrobots = [\"left\"]", "left"),
+        ];
+        for (name, toml, expected) in cases {
+            let error = cell_with_only(&cell, name, toml).unwrap_err().to_string();
+            assert!(error.contains(expected), "{toml}: {error}");
+        }
+        let error = file.table_of("yard", fence).unwrap_err().to_string();
+        assert!(error.contains("fences are not added while the cell runs"), "{error}");
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! Changes of the active tool of a robot, and of the tool on a flange.
 
-use elbowroom_kinematics::ChainState;
+use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::Presence;
 use elbowroom_robot::{Robot, RobotId};
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{Pose, Vec3};
 
 use crate::{Cell, CellRobot, CellTool};
 
@@ -26,6 +26,11 @@ impl CellRobot {
             robot.robot.colliders[tool.link.0] = tool.collider.iter().filter(|_| tool.mounted).cloned().collect();
         }
         robot
+    }
+
+    /// The frame of the tool centre point in a link: of the tool that the link belongs to, otherwise of the active tool.
+    pub fn tcp_in_link(&self, link: LinkId) -> Pose {
+        self.payload.tools.iter().find(|tool| tool.link == link).map_or(self.tcp_in_flange, |tool| tool.tcp_in_link)
     }
 
     /// The robot with the colliders of all its tools, mounted or not.

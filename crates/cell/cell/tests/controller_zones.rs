@@ -299,6 +299,50 @@ fn a_fence_is_a_zone_per_part_of_its_walls() {
     }
 }
 
+/// The comment of each wall names the direction to the inside, in the frame of the controller.
+#[test]
+fn the_walls_of_a_fence_say_which_side_is_inside() {
+    let corners = [[-1200.0, -1800.0], [1900.0, -1800.0], [1900.0, 900.0], [-1200.0, 900.0]];
+    for (turned_deg, reversed) in [(90.0, false), (90.0, true), (30.0, false)] {
+        let mut corners = corners.to_vec();
+        if reversed {
+            corners.reverse();
+        }
+        let fence = format!("[fence.cell]\ncorners = {corners:?}\nheight = 2000\nwarning = 200\nguards = [\"tcp\"]\n");
+        let cell = cell(&format!("base = {{ at = [300, 200, 100], rpy = [0, 0, {turned_deg:?}] }}"), &fence);
+        let exported = export(&cell, None, ZoneLanguage::Krl);
+        let zones = read(&exported, ZoneLanguage::Krl);
+        let titles = exported.text.lines().filter(|line| line.contains("of its walls ("));
+        let named: Vec<&str> =
+            titles.map(|line| line.split_once("is towards ").unwrap().1.split_once(')').unwrap().0).collect();
+        assert_eq!((zones.len(), named.len()), (4, 4), "{}", exported.text);
+        for (name, zone) in named.iter().zip(&zones) {
+            let axes = [("+X", [1.0, 0.0]), ("-X", [-1.0, 0.0]), ("+Y", [0.0, 1.0]), ("-Y", [0.0, -1.0])];
+            let listed = || {
+                let inner = name.trim_matches(['[', ']']).split(',');
+                let numbers: Vec<f64> = inner.map(|n| n.parse().unwrap()).collect();
+                [numbers[0], numbers[1]]
+            };
+            let inwards = axes.iter().find(|(axis, _)| axis == name).map_or_else(listed, |(_, v)| *v);
+            // The middle of the area within, and the middle of the wall, both in the frame of the controller.
+            let place = |p: [f64; 3]| into_frame(p, [300.0, 200.0, 100.0], rotation([turned_deg, 0.0, 0.0]));
+            let middle = place([350.0, -450.0, 1000.0]);
+            let is_of_wall = |i: usize| {
+                let (a, b) = (corners[i], corners[(i + 1) % 4]);
+                let wall = place([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 1000.0]);
+                let step = |mm: f64| [wall[0] + mm * inwards[0], wall[1] + mm * inwards[1], wall[2]];
+                let towards = (middle[0] - wall[0]) * inwards[0] + (middle[1] - wall[1]) * inwards[1];
+                towards > 1000.0 && zone.contains(step(-25.0)) && !zone.contains(step(25.0))
+            };
+            assert_eq!((0..4).filter(|i| is_of_wall(*i)).count(), 1, "{name}: {}", exported.text);
+        }
+        assert!(exported.text.contains("The zones of a fence are its walls"), "{}", exported.text);
+    }
+    let without =
+        export(&cell("", "[region.r]\nshape = \"box\"\nbase = [0, 0, 0]\nsize = [9, 9, 9]\n"), None, ZoneLanguage::Krl);
+    assert!(!without.text.contains("fence"), "{}", without.text);
+}
+
 /// Angles of a cell file are rounded: a box may be turned by what no one means.
 #[test]
 fn a_turn_of_micrometres_is_enclosed_and_a_larger_one_is_refused() {

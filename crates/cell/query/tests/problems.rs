@@ -5,8 +5,10 @@ use std::path::Path;
 use elbowroom_formats::Diagnostic;
 use elbowroom_formats::problem_set::{self, PlanningProblem};
 use elbowroom_formats::robot::{self, LoadOptions};
-use elbowroom_kinematics::TrajectoryRow;
-use elbowroom_query::problems::{ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, RrtConnectEngine, run};
+use elbowroom_kinematics::{ChainState, TrajectoryRow};
+use elbowroom_query::problems::{
+    CoverRrtConnectEngine, ProblemModel, ProblemResult, ProblemSettings, ProblemSummary, RrtConnectEngine, run,
+};
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{Checker, CheckerOptions, SceneState};
 use elbowroom_spatial::Vec3;
@@ -52,7 +54,7 @@ fn model_of(urdf: &str, problems: &[PlanningProblem]) -> Result<ProblemModel, Di
     let path = dir.path().join("crane.urdf");
     std::fs::write(&path, urdf).unwrap();
     let robot = robot::load(&path, &LoadOptions::default()).unwrap().robot;
-    ProblemModel::new(&path, robot, Path::new("p.json"), problems)
+    ProblemModel::new(&path, robot, &[], Path::new("p.json"), problems)
 }
 
 /// Results with the values of the last waypoint; empty without a path.
@@ -234,6 +236,35 @@ fn goals_of_other_robots_are_refused() {
     );
 }
 
+/// A problem of the crane with a kind of motion.
+fn requested(planner: &str, objects: &Value, from: f64, to: f64) -> Value {
+    let mut problem = problem(objects, from, to);
+    problem["request"]["planner_id"] = json!(planner);
+    problem
+}
+
+#[test]
+fn a_joint_motion_is_straight_or_says_what_is_in_its_way() {
+    let post = json!([ball("post", [0.8, 0.0, 0.0])]);
+    // A goal beyond the post, then a free one.
+    let mut several = requested("PTP", &post, -1.0, 1.0);
+    let other = json!({"joint_constraints": [{"joint_name": "waist", "position": -2.0}]});
+    several["request"]["goal_constraints"].as_array_mut().unwrap().push(other);
+    let (results, _) = solve(&[requested("PTP", &json!([]), -1.0, 1.0), requested("PTP", &post, -1.0, 1.0), several]);
+    let facts: Vec<_> = results.iter().map(|(r, _)| (r.motion, r.found, r.proven, r.cost_rad)).collect();
+    let ptp = Some("PTP");
+    assert_eq!(facts, [(ptp, true, true, Some(2.0)), (ptp, false, false, None), (ptp, true, true, Some(1.0))]);
+    assert_eq!((&results[0].1[..], &results[2].1[..]), (&[1.0, 0.02][..], &[-2.0, 0.02][..]));
+    // The side of the arm, 0.05 from its middle, meets the ball of 0.1 at 0.8 where 0.8 sin q = 0.15.
+    let percent = 100.0 * (1.0 - f64::asin(0.15 / 0.8)) / 2.0;
+    let words = format!("is free for {percent:.1} % only, there `arm` and `post` meet");
+    assert!(reason(&results[1].0).contains(&words), "{words}: {}", reason(&results[1].0));
+    assert!(results.iter().all(|(r, _)| r.line_deviation_m.is_none()));
+    // The engine without covers has no lines, and says so.
+    let line = only(requested("LIN", &json!([]), -1.0, 1.0));
+    assert!(line.motion == Some("LIN") && !line.found && reason(&line).contains("enclosed in spheres"), "{line:?}");
+}
+
 /// Solves the first problems of each set; a separate checker finds the rows of the paths free.
 fn first_of_each_set(urdf: &Path, srdf: &Path, file: &Path, per_set: usize, seed: u64) {
     let all = problem_set::read(file).unwrap_or_else(|e| panic!("{e}")).problems;
@@ -245,7 +276,7 @@ fn first_of_each_set(urdf: &Path, srdf: &Path, file: &Path, per_set: usize, seed
     }
     let options = LoadOptions { srdf: Some(srdf.to_owned()), ..LoadOptions::default() };
     let robot = robot::load(urdf, &options).unwrap_or_else(|e| panic!("{e}")).robot;
-    let model = ProblemModel::new(urdf, robot, file, &problems).unwrap_or_else(|e| panic!("{e}"));
+    let model = ProblemModel::new(urdf, robot, &[], file, &problems).unwrap_or_else(|e| panic!("{e}"));
     let settings =
         ProblemSettings { time_limit: std::time::Duration::from_mins(1), seed, ..ProblemSettings::default() };
     let mut n = 0;
@@ -274,6 +305,55 @@ fn panda_with_meshes_solves_the_first_of_each_set() {
     let model = data.join("../urdf/panda");
     let file = data.join("mbm_panda/problems_first100.json");
     first_of_each_set(&model.join("panda.urdf"), &model.join("panda.srdf"), &file, 2, 1);
+}
+
+/// The flange of the Panda moves straight, in every row, to the pose of the goal; the finger joints stay.
+#[test]
+fn panda_moves_its_flange_straight() {
+    let Some(data) = folder::data_part("problems") else { return };
+    let model = data.join("../urdf/panda");
+    let (urdf, srdf) = (model.join("panda.urdf"), model.join("panda.srdf"));
+    let names: Vec<String> = (1..=7).map(|i| format!("panda_joint{i}")).collect();
+    let ready = [0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785];
+    let near = [0.25, -0.6, 0.1, -2.2, 0.1, 1.7, 0.6];
+    let goal: Vec<Value> = names.iter().zip(near).map(|(name, q)| json!({"joint_name": name, "position": q})).collect();
+    let request = |planner: &str| {
+        json!({"scene": {}, "request": {"group_name": "panda_arm", "planner_id": planner,
+            "pipeline_id": "pilz_industrial_motion_planner",
+            "start_state": {"joint_state": {"name": names, "position": ready}},
+            "goal_constraints": [{"joint_constraints": goal}]}})
+    };
+    let problems = parse(&[request("LIN"), request("PTP")]);
+    let loaded = robot::load(&urdf, &LoadOptions { srdf: Some(srdf), ..LoadOptions::default() }).unwrap();
+    let (chain, groups) = (loaded.robot.chain.clone(), loaded.srdf.unwrap().groups);
+    let [[_, tip]] = &groups.iter().find(|g| g.name == "panda_arm").unwrap().chains[..] else { panic!("a chain") };
+    let tip = chain.link(tip).unwrap();
+    let model = ProblemModel::new(&urdf, loaded.robot, &groups, Path::new("p.json"), &problems).unwrap();
+    let position = |q: &[f64]| {
+        let mut state = ChainState::new(&chain);
+        state.q.copy_from_slice(q);
+        chain.forward(&mut state);
+        state.link_in_root(tip).translation
+    };
+    let mut off_m = Vec::new();
+    let settings = ProblemSettings::default();
+    let mut engine = CoverRrtConnectEngine::default();
+    let results = run(&model, &problems, &settings, &mut engine, &mut |_, timed| {
+        let (goal, rows) =
+            (model.problem_scene(&problems[0]).unwrap().goals()[0].clone(), timed.unwrap().trajectory.rows());
+        let (from, to) = (position(&rows[0].q), position(&goal));
+        assert!(position(&rows.last().unwrap().q).distance(to) < 1e-6);
+        assert!(rows.iter().all(|row| row.q[7..] == rows[0].q[7..]));
+        let way = to - from;
+        let distance = |q: &[f64]| (position(q) - from).cross(way).length() / way.length();
+        off_m.push(rows.iter().map(|row| distance(&row.q)).fold(0.0, f64::max));
+        true
+    });
+    let results = results.unwrap();
+    eprintln!("LIN {:.3} mm, PTP {:.1} mm off the line: {results:?}", 1e3 * off_m[0], 1e3 * off_m[1]);
+    let told = (results[0].line_deviation_m.unwrap(), results[0].line_deviation_rad.unwrap());
+    assert!(off_m[0] <= told.0 + 1e-12 && told.0 < 1e-3 && told.1 < 3e-3, "{off_m:?} {told:?}");
+    assert!(off_m[1] > 5e-3 && results[1].line_deviation_m.is_none(), "{off_m:?}");
 }
 
 #[test]

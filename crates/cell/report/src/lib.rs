@@ -66,6 +66,7 @@ mod results;
 mod run_data;
 mod scene;
 mod scene_data;
+mod sensor_data;
 pub mod shared_assets;
 mod spans;
 mod sparkline;

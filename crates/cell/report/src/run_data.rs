@@ -1,8 +1,7 @@
 //! Data of runs for the scripts of the page: values per frame.
 
 use elbowroom_kinematics::LinkId;
-use elbowroom_query::watch::{WatchStatus, WatchedObstacle};
-use elbowroom_sim::{EventRow, Recording, RegionPoses, RobotTrack, RunEvent, Sample, SensorTrack, Span};
+use elbowroom_sim::{EventRow, Recording, RegionPoses, RobotTrack, RunEvent, Sample, Span};
 use elbowroom_spatial::Pose;
 use serde_json::{Value, json};
 
@@ -10,6 +9,7 @@ use crate::downsample::every;
 use crate::explanation::explanation;
 use crate::packing::{ArrayPacker, pose_values};
 use crate::scene::{ReportRobot, ReportScene};
+use crate::sensor_data::sensor;
 use crate::summary;
 
 /// Largest number of evenly spaced frames.
@@ -21,8 +21,6 @@ const MAX_EVENT_FRAMES: usize = 200;
 const EXACT: f64 = 1e-8;
 const TIME_STEP_S: f64 = 1e-6;
 const SHOWN_STEP: f64 = 1e-6;
-/// Step of outlines that sensors see, m.
-const SEEN_STEP_M: f64 = 1e-3;
 
 /// The ticks that the page contains: evenly spaced, with the start and end of every stop.
 pub fn frames(rec: &Recording) -> Vec<usize> {
@@ -98,20 +96,6 @@ fn opens_s(rec: &Recording) -> f64 {
     let stops = rec.robots.iter().flat_map(|r| r.stops.iter().map(|s| s.from_s).chain(r.ending.stopped_at_s));
     let collisions = rec.robots.iter().flat_map(|r| r.collisions.iter().map(|c| c.t_s));
     stops.chain(collisions).min_by(f64::total_cmp).unwrap_or(0.0)
-}
-
-/// Observations of a sensor: per accepted picture or cloud, the time from which it was used, and its obstacles.
-fn sensor(track: &SensorTrack) -> Value {
-    let rounded = |v: f64| (v / SEEN_STEP_M).round() * SEEN_STEP_M;
-    let obstacle = |o: &WatchedObstacle| {
-        let outline: Vec<[f64; 2]> = o.outline_m.iter().map(|p| p.map(rounded)).collect();
-        json!({ "id": o.id, "outline": outline, "bottom": rounded(o.bottom_m), "height": rounded(o.height_m) })
-    };
-    let accepted = track.records.iter().filter(|r| r.status == WatchStatus::Accepted);
-    let records = accepted.map(
-        |r| json!({ "t": r.t_s + track.latency_s, "obstacles": r.obstacles.iter().map(obstacle).collect::<Vec<_>>() }),
-    );
-    json!({ "name": track.name, "records": records.collect::<Vec<_>>() })
 }
 
 /// Periods in which robots hold the object: (robot, start, end), times in seconds.

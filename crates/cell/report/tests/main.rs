@@ -5,6 +5,7 @@ mod chromium;
 mod levels_page;
 mod moving_objects;
 mod page_data;
+mod perceived;
 mod report;
 mod report_demo;
 mod shields;

@@ -232,6 +232,9 @@ fn who_teaches_at_a_robot_sees_where_it_is_and_its_distance_from_what_is_taught(
     assert!((distance(TABLE) - 0.45).abs() < 1e-6, "{}", distance(TABLE));
     controller.q_mm.store(820, SeqCst);
     eventually("inside", || distance(TABLE) == 0.0 || (distance(TABLE) - 0.03).abs() < 1e-6);
+    // A fence: its walls are 500 mm away, on both sides of the ball.
+    let fence = "[fence.lamp]\ncorners = [[-500, -500], [500, -500], [500, 500], [-500, 500]]\nheight = 3000\n";
+    assert!((distance(fence) - 0.45).abs() < 1e-6, "{}", distance(fence));
     // A name that the cell has is compared with the new shape.
     let (_, document) =
         ask(&setup, &json!({ "robot": "left", "region": "cart", "toml": TABLE.replace("1000", "1500") }));

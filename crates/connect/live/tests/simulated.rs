@@ -101,6 +101,33 @@ fn a_gripped_part_and_an_exchanged_tool_are_guarded_until_they_are_gone() {
     });
 }
 
+/// The TCP and the cell of the grid are of the lance while it is on the robot, and of the gripper before and after.
+#[test]
+fn the_tcp_and_the_grid_of_a_status_are_of_the_tool_that_is_mounted() {
+    let tools = "[robot.rail.tools.gripper]\ntcp = { at = [0, 0, 100] }\n\
+        [robot.rail.tools.lance]\ntcp = { at = [0, 30, 1000] }\nmounted = false\n\
+        [grid.rail]\nfrom = [-500, -500, 0]\nto = [500, 500, 4000]\ncells = [1, 1, 40]\noutput = 8";
+    let (service, statuses, _subscription) = start(&cell(tools, "tool = \"lance\"", "tool = \"gripper\""));
+    let mut seen = [0, 0];
+    let place = |status: &RobotStatus| {
+        Some((status.q.first().copied()?, status.tcp.as_ref()?.position_m, *status.grids.get("rail")?))
+    };
+    wait_for(&statuses, "both tools", |status| {
+        let Some((q, tcp, cell)) = place(status) else { return false };
+        let tool = usize::from(tcp[1] > 0.0);
+        let (y, z) = [(0.0, 0.1), (0.03, 1.0)][tool];
+        assert!((tcp[1] - y).abs() < 1e-9 && (tcp[2] - q - z).abs() < 1e-9, "{q} {tcp:?}");
+        // Cells are 100 mm high and count from 1; near a border the former cell may stay.
+        let from_border = ((q + z) * 10.0).rem_euclid(1.0);
+        if (0.2..0.8).contains(&from_border) {
+            assert_eq!(cell, 1 + ((q + z) * 10.0) as u32, "{q} {tcp:?}");
+            seen[tool] += 1;
+        }
+        seen.iter().all(|count| *count > 1)
+    });
+    service.stop().expect("it ends");
+}
+
 /// The gate was never switched off when the service starts, so it is on. The program begins with it off, as in `run`, and a
 /// switch in it lasts.
 #[test]

@@ -29,7 +29,7 @@ pub struct RobotStatus {
     pub exchange: BTreeMap<String, String>,
     /// Sequence number of the joint state that the override answers.
     pub sequence: u64,
-    /// Pose of the TCP in the world, if the joint values are known.
+    /// Pose of the TCP in the world, of the tool that is mounted; `None` without one, or without joint values.
     pub tcp: Option<PoseStatus>,
     /// Digital outputs, bit i is channel i.
     pub outputs: u64,

@@ -1,6 +1,8 @@
 //! Per-tick data for the status, copied without allocation.
 
-use elbowroom_monitor::{Event, ExchangeState, Monitor, OverrideReason, RegionId, Snapshot, TickReport, VirtualTcp};
+use elbowroom_monitor::{
+    Event, ExchangeState, Monitor, OverrideReason, RegionId, Snapshot, TickReport, VirtualTcp, VolumeId,
+};
 use elbowroom_spatial::Pose;
 
 /// Most events kept between two statuses; further ones are only counted.
@@ -16,6 +18,8 @@ pub struct StatusSample {
     pub(crate) report: TickReport,
     pub(crate) regions: Vec<RegionSample>,
     pub(crate) virtual_tcps: Vec<VirtualTcp>,
+    /// The tool centre point of the mounted tool.
+    tcp: Option<VolumeId>,
     events: Vec<Event>,
     lost_events: usize,
 }
@@ -62,6 +66,7 @@ impl StatusSample {
             report: nothing,
             regions: Vec::with_capacity(regions),
             virtual_tcps: Vec::with_capacity(regions),
+            tcp: None,
             events: Vec::with_capacity(MAX_EVENTS),
             lost_events: 0,
         }
@@ -77,6 +82,7 @@ impl StatusSample {
         self.regions.extend((0..count).map(|r| RegionSample::of(monitor, RegionId(r))));
         self.virtual_tcps.clear();
         self.virtual_tcps.extend(monitor.virtual_tcps(snapshot).take(self.virtual_tcps.capacity()));
+        self.tcp = monitor.tcp();
     }
 
     /// Copies the result of a tick without joint values.
@@ -85,6 +91,12 @@ impl StatusSample {
         self.q.clear();
         self.regions.clear();
         self.virtual_tcps.clear();
+        self.tcp = None;
+    }
+
+    /// The tool centre point of the tool that was mounted in the tick; `None` without a tool, or without input.
+    pub fn tcp(&self) -> Option<VolumeId> {
+        self.tcp
     }
 
     /// Joint positions; empty without input.

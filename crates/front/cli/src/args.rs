@@ -351,6 +351,7 @@ pub(crate) struct MapArgs {
   cylinder         base centre, rim point, a point at the height of the top
   plane            origin, point on x, point in the xy plane (the region lies below)
   box              two opposite corners           box3      three base corners, and --height
+  fence            three or more corners on the floor, in order, and --height of the walls
 
 Example:
   elbowroom teach cell.toml --shape sphere --name lamp --states taught.csv >> cell.toml")]

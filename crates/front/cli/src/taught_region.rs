@@ -1,6 +1,6 @@
 //! A region from taught points, as text of a cell file.
 
-use std::fmt::Write;
+use std::fmt::Write as _;
 use std::path::Path;
 
 use clap::ValueEnum as _;
@@ -12,6 +12,8 @@ use elbowroom::proximity::Shape;
 use elbowroom::spatial::Vec3;
 
 use crate::output::Failure;
+use crate::region_keys::{keys, shown, table_key};
+use crate::taught_fence::{FEWEST_CORNERS, TaughtFence};
 use crate::taught_shape::{TaughtShape, TaughtShapeArgs};
 
 /// What the taught points determine.
@@ -22,9 +24,29 @@ pub(crate) struct TaughtRegion<'a> {
     pub(crate) is_temporary: bool,
 }
 
+/// The solid that the points determine.
+#[derive(Debug, Clone)]
+pub(crate) enum TaughtSolid {
+    /// One shape.
+    Shape(Box<Region>),
+    /// The walls of a fence.
+    Fence(TaughtFence),
+}
+
 impl TaughtRegion<'_> {
     /// The region, or why the points do not determine it.
-    pub(crate) fn region(&self, points: &[Vec3]) -> Result<Region, String> {
+    pub(crate) fn solid(&self, points: &[Vec3]) -> Result<TaughtSolid, String> {
+        match (self.shape.shape, self.height_m()) {
+            (TaughtShape::Fence, Some(height_m)) if points.len() >= FEWEST_CORNERS => {
+                let fence = TaughtSolid::Fence(TaughtFence::new(points, height_m));
+                let problem = self.problem(&self.toml(&fence), Path::new(""));
+                problem.map_or(Ok(fence), |e| Err(told(&e)))
+            }
+            _ => self.region(points).map(|region| TaughtSolid::Shape(Box::new(region))),
+        }
+    }
+
+    fn region(&self, points: &[Vec3]) -> Result<Region, String> {
         let name = self.name;
         let result = match (self.shape.shape, points, self.height_m()) {
             (TaughtShape::Sphere, [center, surface], None) => taught::sphere_from_center(name, *center, *surface),
@@ -36,7 +58,7 @@ impl TaughtRegion<'_> {
                 taught::cuboid_from_base(name, *corner, *along, *across, height)
             }
             (shape, ..) => {
-                let needs = format!("{} states and {}", points_of(shape).len(), height_of(shape));
+                let needs = format!("{} states and {}", count_of(shape), height_of(shape));
                 return Err(format!("{} states; --shape {} needs {needs}", points.len(), word(shape)));
             }
         };
@@ -47,30 +69,40 @@ impl TaughtRegion<'_> {
     /// moves a robot.
     pub(crate) fn check_arguments(&self) -> Result<(), Failure> {
         let shape = self.shape.shape;
-        let fits = match self.shape.height {
-            Some(height) => shape == TaughtShape::Box3 && height.is_finite() && height != 0.0,
-            None => shape != TaughtShape::Box3,
+        let fits = match (shape, self.shape.height) {
+            (TaughtShape::Box3, Some(height)) => height.is_finite() && height != 0.0,
+            (TaughtShape::Fence, Some(height)) => height.is_finite() && height > 0.0,
+            (TaughtShape::Box3 | TaughtShape::Fence, None) | (_, Some(_)) => false,
+            (_, None) => true,
         };
         if !fits {
             let what = format!("--shape {} needs {}", word(shape), height_of(shape));
-            return Err(Failure::Wrong(format!(
-                "{what}\n  write: --shape box3 --height 300, or another shape without --height"
-            )));
+            let help = "--shape box3 --height 300, --shape fence --height 2000, or another shape without --height";
+            return Err(Failure::Wrong(format!("{what}\n  write: {help}")));
         }
-        let any = Region::sphere(self.name, Vec3::ZERO, 1.0);
-        self.check(&self.toml(&any), Path::new("the arguments"))
+        if shape == TaughtShape::Fence && self.shape.inside {
+            let what = "--shape fence has no --inside: what is within a fence is free";
+            return Err(Failure::Wrong(format!("{what}\n  write: --shape fence without --inside")));
+        }
+        let any = Box::new(Region::sphere(self.name, Vec3::ZERO, 1.0));
+        self.check(&self.toml(&TaughtSolid::Shape(any)), Path::new("the arguments"))
     }
 
-    /// In words, how a box of three corners and a height was built; empty for other shapes.
-    pub(crate) fn built(&self, region: &Region, points: &[Vec3]) -> Result<Vec<String>, String> {
+    /// In words, how a fence, or a box of three corners and a height, was built; empty for other shapes.
+    pub(crate) fn built(&self, solid: &TaughtSolid, points: &[Vec3]) -> Result<Vec<String>, String> {
+        let region = match solid {
+            TaughtSolid::Fence(fence) => return Ok(fence.built(self.units)),
+            TaughtSolid::Shape(region) => region,
+        };
         let ([corner, along, across], Some(height)) = (points, self.height_m()) else { return Ok(Vec::new()) };
         let direction = taught::height_direction(*corner, *along, *across, height).map_err(|e| e.to_string())?;
         Ok(box_built(region, &direction, self.units))
     }
 
     /// The table of the cell file.
-    pub(crate) fn toml(&self, region: &Region) -> String {
-        let mut text = format!("[region.{}]\n{}kind = \"forbidden\"\n", key(self.name), toml(region, self.units));
+    pub(crate) fn toml(&self, solid: &TaughtSolid) -> String {
+        let mut text = self.table(solid);
+        text.push_str("kind = \"forbidden\"\n");
         if self.shape.inside {
             text.push_str("keep = \"inside\"\n");
         }
@@ -81,20 +113,45 @@ impl TaughtRegion<'_> {
         text
     }
 
+    /// The table with the keys of shape and place only.
+    pub(crate) fn table(&self, solid: &TaughtSolid) -> String {
+        match solid {
+            TaughtSolid::Shape(region) => format!("[region.{}]\n{}", table_key(self.name), keys(region, self.units)),
+            TaughtSolid::Fence(fence) => self.fence_table(&fence.keys(self.units)),
+        }
+    }
+
+    /// The table of a fence with these keys.
+    pub(crate) fn fence_table(&self, keys: &str) -> String {
+        format!("[fence.{}]\n{keys}", table_key(self.name))
+    }
+
     /// Rejects a region that the parser of the cell file would reject.
     pub(crate) fn check(&self, text: &str, from: &Path) -> Result<(), Failure> {
-        let (length, angle) = (self.units.length.symbol(), self.units.angle.symbol());
-        let head = format!("version = 1\nunits = {{ length = \"{length}\", angle = \"{angle}\" }}\n");
-        let Err(e) = Cell::parse(from, &(head + text)) else { return Ok(()) };
+        let Some(e) = self.problem(text, from) else { return Ok(()) };
         Err(Diagnostic { line: None, message: format!("the region taught: {}", e.message), ..e }.into())
     }
 
-    fn height_m(&self) -> Option<f64> {
+    /// The error of the parser of the cell file for this table.
+    pub(crate) fn problem(&self, text: &str, from: &Path) -> Option<Diagnostic> {
+        let (length, angle) = (self.units.length.symbol(), self.units.angle.symbol());
+        let head = format!("version = 1\nunits = {{ length = \"{length}\", angle = \"{angle}\" }}\n");
+        Cell::parse(from, &(head + text)).err()
+    }
+
+    /// The height that the arguments state, m.
+    pub(crate) fn height_m(&self) -> Option<f64> {
         self.shape.height.map(|h| self.units.length.to_metres(h))
     }
 }
 
-/// The points that determine a shape, in their order.
+/// An error without its file and line, which whoever teaches does not have.
+fn told(e: &Diagnostic) -> String {
+    let hint = e.hint.as_ref().map(|hint| format!("\n  write: {hint}")).unwrap_or_default();
+    format!("the region taught: {}{hint}", e.message)
+}
+
+/// The points that determine a shape, in their order; of a fence the corner that is repeated.
 pub(crate) fn points_of(shape: TaughtShape) -> &'static [&'static str] {
     match shape {
         TaughtShape::Sphere => &["the centre", "a point on the surface"],
@@ -107,11 +164,24 @@ pub(crate) fn points_of(shape: TaughtShape) -> &'static [&'static str] {
         TaughtShape::Box3 => {
             &["a corner of the base", "the corner along the first edge", "the corner along the second edge"]
         }
+        TaughtShape::Fence => &["the next corner of the fence on the floor"],
+    }
+}
+
+/// How many points a shape needs, in words.
+fn count_of(shape: TaughtShape) -> String {
+    match shape {
+        TaughtShape::Fence => format!("{FEWEST_CORNERS} or more"),
+        _ => points_of(shape).len().to_string(),
     }
 }
 
 fn height_of(shape: TaughtShape) -> &'static str {
-    if shape == TaughtShape::Box3 { "--height" } else { "no --height" }
+    match shape {
+        TaughtShape::Box3 => "--height",
+        TaughtShape::Fence => "--height above 0",
+        _ => "no --height",
+    }
 }
 
 /// The word of a shape on the command line.
@@ -157,60 +227,4 @@ fn box_built(region: &Region, height: &HeightDirection, units: Units) -> Vec<Str
         );
     }
     lines
-}
-
-/// Formats a number with at most four digits after the decimal point.
-fn shown(v: f64) -> String {
-    format!("{}", (v * 1e4).round() / 1e4 + 0.0)
-}
-
-/// The keys of shape and place in cell-file syntax.
-fn toml(region: &Region, units: Units) -> String {
-    let length = |metres: f64| metres / units.length.to_metres(1.0);
-    let angle = |radians: f64| radians / units.angle.to_radians(1.0);
-    let mut text = String::new();
-    let mut line = |key: &str, value: String| {
-        let _ = writeln!(text, "{key} = {value}");
-    };
-    // Rounded to 0.1 µm and to seven digits of an angle.
-    let rounded = |v: f64, per_unit: f64| format!("{}", (v * per_unit).round() / per_unit + 0.0);
-    let number = |metres: f64| rounded(length(metres), (1e7 / length(1.0)).round());
-    let point = |p: Vec3| format!("[{}]", p.to_array().map(number).join(", "));
-    let rpy = |r: [f64; 3]| format!("[{}]", r.map(|v| rounded(angle(v), 1e7)).join(", "));
-    let at = region.anchor.translation;
-    let rotation = region.anchor.rotation;
-    match &region.shape {
-        Shape::Sphere(s) => {
-            line("shape", "\"sphere\"".into());
-            line("centre", point(at));
-            line("radius", number(s.radius));
-        }
-        Shape::Cylinder(c) => {
-            line("shape", "\"cylinder\"".into());
-            line("base", point(at));
-            line("radius", number(c.radius));
-            line("height", number(2.0 * c.half_length));
-        }
-        Shape::Cuboid(c) => {
-            line("shape", "\"box\"".into());
-            line("base", point(at));
-            line("size", point(c.half_extents * 2.0));
-            if rotation.angle() > 0.0 {
-                line("rpy", rpy(rotation.to_rpy()));
-            }
-        }
-        _ => {
-            line("shape", "\"plane\"".into());
-            line("origin", point(at));
-            line("x", point(at + rotation.x_axis()));
-            line("y", point(at + rotation.y_axis()));
-        }
-    }
-    text
-}
-
-/// Formats a TOML key, bare if possible.
-fn key(name: &str) -> String {
-    let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    if bare { name.to_owned() } else { serde_json::Value::from(name).to_string() }
 }

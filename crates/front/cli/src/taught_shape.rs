@@ -11,7 +11,8 @@ pub(crate) struct TaughtShapeArgs {
     /// Teach with the flange instead of the TCP
     #[arg(long)]
     pub(crate) flange: bool,
-    /// Height of box3, in the cell file's unit of length: positive is upwards from the taught corners, negative downwards
+    /// Height of box3 or of the walls of a fence, in the cell file's unit of length; of box3 positive is upwards from the
+    /// taught corners, negative downwards
     #[arg(long, allow_negative_numbers = true)]
     pub(crate) height: Option<f64>,
     /// Keep robots inside of the shape instead of out of it
@@ -30,4 +31,5 @@ pub(crate) enum TaughtShape {
     Plane,
     Box,
     Box3,
+    Fence,
 }

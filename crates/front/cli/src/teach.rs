@@ -16,11 +16,12 @@ pub(crate) fn teach(args: &TeachArgs) -> Result<ExitStatus, Failure> {
         return Err(Failure::Wrong(format!("{}: there is a region `{}` already", args.cell.display(), args.name)));
     }
     let taught = TaughtRegion { name: &args.name, shape: &args.shape, units: cell.units, is_temporary: false };
+    taught.check_arguments()?;
     let wrong = |why: String| Failure::Wrong(format!("{}: {why}", args.states.display()));
-    let region = taught.region(&points).map_err(wrong)?;
-    let built = taught.built(&region, &points).map_err(wrong)?;
+    let solid = taught.solid(&points).map_err(wrong)?;
+    let built = taught.built(&solid, &points).map_err(wrong)?;
     let comments = built.iter().map(|line| format!("# {line}\n")).collect::<Vec<_>>().concat();
-    let text = format!("\n{comments}{}", taught.toml(&region));
+    let text = format!("\n{comments}{}", taught.toml(&solid));
     taught.check(&text, &args.states)?;
     built.iter().for_each(note);
     print(&text)?;

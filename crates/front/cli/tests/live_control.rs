@@ -280,6 +280,8 @@ warning = 100
         std::thread::sleep(Duration::from_millis(600));
         lesson.type_line("");
         let surface = lesson.number("a point on the surface at ");
+        let told = lesson.hear("rail is ");
+        assert!(told.contains(" mm from the point"), "{told}");
         assert!(surface > centre + 2.0, "{centre} {surface}");
         lesson.hear("Enter takes the region, r teaches it again");
         let near = lesson.number("rail is ");
@@ -302,6 +304,84 @@ warning = 100
         let text = std::fs::read_to_string(folder.join("cell.toml")).unwrap() + &format!("[region.lamp]\n{table}");
         std::fs::write(folder.join("taught.toml"), text).unwrap();
         assert_eq!(answer(command(folder, &["query", "taught.toml", "--ask", "distance"]).output().unwrap()).status, 0);
+    }
+
+    /// Three slides, whose tool centre point goes around a rectangle on the floor again and again.
+    const GANTRY: &str = r#"
+version = 1
+name = "gantry"
+units = { length = "mm", angle = "deg" }
+[robot.rail]
+base = { at = [0, 0, 0], rpy = [0, 90, 0] }
+dh = [
+  { kind = "prismatic", min = -3000, max = 3000, speed = 1000, alpha = -90, theta = 0 },
+  { kind = "prismatic", min = -3000, max = 3000, speed = 1000, alpha = 90, theta = -90 },
+  { kind = "prismatic", min = -3000, max = 3000, speed = 1000 },
+]
+links = [[], [], { sphere = { radius = 30 } }]
+[program.rail]
+steps = [
+  { move = "joint", to = [1000, 0, 0], speed = 40 },
+  { move = "joint", to = [1000, 800, 0], speed = 40 },
+  { move = "joint", to = [0, 800, 0], speed = 40 },
+  { move = "joint", to = [0, 0, 0], speed = 40 },
+]
+"#;
+
+    /// Each corner is on another side of the rectangle. While the fence is taught, the robot is compared with the line on
+    /// the first corner, the first wall, and the walls so far; then with the fence.
+    #[test]
+    fn a_fence_is_taught_corner_by_corner_and_compared_all_the_while() {
+        let folder = cell_and_tokens();
+        let folder = folder.path();
+        std::fs::write(folder.join("cell.toml"), GANTRY).unwrap();
+        let (_process, at) = start_simulated(folder);
+        let arguments = ["--shape", "fence", "--height", "1500", "--warning", "200", "--permanent"];
+        let mut lesson = Lesson::start(folder, &at, &arguments);
+        let parts = ["", "the upright line on the corner", "the wall", "the walls so far"];
+        for (i, part) in parts.iter().enumerate().take(3) {
+            let asked = lesson.hear(&format!("corner {}: move the TCP of rail to the next corner", i + 1));
+            assert!(!asked.contains("c closes the fence"), "{asked}");
+            std::thread::sleep(Duration::from_millis(2600));
+            lesson.type_line("");
+            lesson.hear(&format!("corner {}: the next corner of the fence on the floor at [", i + 1));
+            if !part.is_empty() {
+                let told = lesson.hear("rail is ");
+                assert!(told.contains(" mm from ") && told.ends_with(part), "{told}");
+            }
+        }
+        assert!(lesson.hear("corner 4: move").contains("(c closes the fence, q ends)"));
+        lesson.type_line("d");
+        lesson.hear("`d` is not an answer here: Enter, c or q");
+        lesson.type_line("c");
+        let built = lesson.hear("built 3 walls, 1500 mm high");
+        assert!(built.contains("z from 0 to 1500 mm"), "{built}");
+        lesson.hear("Enter takes the region, r teaches it again");
+        lesson.number("rail is ");
+        lesson.type_line("");
+        let (status, toml) = lesson.end();
+        assert_eq!(status, 0);
+        let keys = toml.split_once("[fence.lamp]\n").unwrap().1;
+        assert!(keys.starts_with("corners = [[") && keys.contains("\nfloor = 0\nheight = 1500\n"), "{toml}");
+        assert!(keys.contains("warning = 200") && !keys.contains("life") && !keys.contains("gates"), "{toml}");
+        let text = std::fs::read_to_string(folder.join("cell.toml")).unwrap() + &toml;
+        std::fs::write(folder.join("taught.toml"), text).unwrap();
+        let asked = answer(command(folder, &["query", "taught.toml", "--ask", "distance"]).output().unwrap());
+        assert_eq!(asked.status, 0, "{}", asked.stderr);
+        assert!(!regions(folder, &at).contains("lamp"), "a fence is put into the cell file");
+        let teach = |arguments: &[&str]| {
+            let words = ["teach", "yard", "--robot", "rail", "--at", &at, "--secret", "operator.secret"];
+            control(folder, &[&words[..], arguments].concat())
+        };
+        for (arguments, message) in [
+            (&["--shape", "fence"][..], "--shape fence needs --height above 0"),
+            (&["--shape", "fence", "--height=-3"], "--shape fence needs --height above 0"),
+            (&["--shape", "fence", "--height", "3", "--inside"], "--shape fence has no --inside"),
+            (&["--shape", "fence", "--height", "3", "--add"], "a fence is not added to a running cell"),
+        ] {
+            let refused = teach(arguments);
+            assert!(refused.status == 2 && refused.stderr.contains(message), "{arguments:?}: {}", refused.stderr);
+        }
     }
 
     #[test]

@@ -62,7 +62,8 @@ fn the_document_has_the_documented_keys_and_the_files_the_paths() {
     let document = answer.expect(0).json();
     assert_eq!(keys(&document), ["problems", "summary"]);
     let problems = document["problems"].as_array().unwrap();
-    let documented = "cost_rad cost_raw_rad duration_s found id planning_us proven reason set simplify_us valid";
+    let documented = "cost_rad cost_raw_rad duration_s found id line_deviation_m line_deviation_rad motion planning_us proven reason \
+                      set simplify_us valid";
     for problem in problems {
         assert_eq!(keys(problem).join(" "), documented);
     }
@@ -223,5 +224,72 @@ fn a_path_constraint_keeps_an_axis_of_a_link_and_is_refused_where_it_cannot_be_k
         let (_, answer) = plan(&with(constraints, 0.0), &["--json"]);
         let refused = answer.expect(2).stderr;
         assert!(refused.contains("set `set`, problem `1`") && refused.contains(message), "{refused}");
+    }
+}
+
+#[test]
+fn motions_of_the_industrial_planner_are_straight_lines_and_straight_joint_motions() {
+    let requested = |planner: &str, with_post: bool, to: &[f64]| {
+        let mut one = problem(with_post, to);
+        one["request"]["pipeline_id"] = json!("pilz_industrial_motion_planner");
+        one["request"]["planner_id"] = json!(planner);
+        one
+    };
+    let robot = load(&model("ns16"), &LoadOptions::default()).unwrap().robot;
+    let tool = robot.chain.link("tool0").unwrap();
+    let position = |q: &[f64]| {
+        let mut state = ChainState::new(&robot.chain);
+        state.q.copy_from_slice(q);
+        robot.chain.forward(&mut state);
+        state.link_in_root(tool).translation
+    };
+    let near = [-0.5, 0.62, -0.1, 0.1, 0.3, 0.2];
+    let mut blocked = requested("LIN", true, &ALL);
+    let middle = (position(&READY) + position(&ALL)) * 0.5;
+    blocked["scene"]["world"]["collision_objects"][1]["primitive_poses"][0]["position"] =
+        json!([middle.x, middle.y, 0.9]);
+    let set = json!({"moves": {
+        "lin": requested("LIN", false, &near), "ptp": requested("PTP", false, &near),
+        "ptp post": requested("PTP", true, &ALL), "lin post": blocked}});
+    let (dir, answer) = plan(&set, &["--json", "--paths", "paths"]);
+    let document = answer.expect(1).json();
+    let facts: Vec<_> = ["motion", "valid", "found"]
+        .map(|key| document["problems"].as_array().unwrap().iter().map(|p| p[key].clone()).collect::<Value>())
+        .into();
+    assert_eq!(
+        facts,
+        [json!(["LIN", "PTP", "PTP", "LIN"]), json!([true, true, true, true]), json!([true, true, false, false])]
+    );
+    let reason = |i: usize| document["problems"][i]["reason"].as_str().unwrap().to_owned();
+    assert!(reason(2).contains("% only, there `") && reason(2).contains("`post` meet"), "{}", reason(2));
+    assert!(reason(3).starts_with("the straight line can be followed for "), "{}", reason(3));
+
+    let (from, to) = (position(&READY), position(&near));
+    let largest_off_m = |file: &str| {
+        let rows = rows(dir.path(), file);
+        assert!(position(&rows.last().unwrap()[1..]).distance(to) < 1e-6);
+        let off = |row: &Vec<f64>| (position(&row[1..]) - from).cross(to - from).length() / (to - from).length();
+        rows.iter().map(off).fold(0.0, f64::max)
+    };
+    let told = document["problems"][0]["line_deviation_m"].as_f64().unwrap();
+    let straight = largest_off_m("moves-lin.csv");
+    assert!(straight <= told + 1e-6 && told < 1e-3, "{straight} {told}");
+    assert!(largest_off_m("moves-ptp.csv") > 2e-3 && document["problems"][1]["line_deviation_m"].is_null());
+    assert_eq!(document["summary"]["all"]["line_deviation_m"], told);
+    let table = plan(&set, &[]).1.expect(1).stdout;
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(lines[1].ends_with("line mm") && lines[2].ends_with(&format!("{:.3}", 1e3 * told)), "{table}");
+    assert!(lines[..4].iter().all(|line| line.chars().count() <= 80), "{table}");
+
+    for (planner, group, words) in [
+        ("CIRC", "arm", ["circles are not supported", "\"LIN\" once per chord"]),
+        ("LINE", "arm", ["\"LINE\"", "write: LIN"]),
+        ("LIN", "amr", ["no group `amr`", "write: "]),
+    ] {
+        let mut one = requested(planner, false, &near);
+        one["request"]["group_name"] = json!(group);
+        let refused = plan(&json!({"moves": {"1": one}}), &[]).1.expect(2).stderr;
+        assert!(refused.contains("sets.json") && refused.contains("set `moves`, problem `1`"), "{refused}");
+        assert!(words.iter().all(|word| refused.contains(word)), "{refused}");
     }
 }

@@ -113,6 +113,65 @@ fn the_side_of_an_upright_base_is_reported_and_can_be_chosen() {
     assert!((one.distance(other) - 0.4).abs() < 1e-9 && (one.z - 0.5).abs() < 1e-9, "{one:?} {other:?}");
 }
 
+/// Teaches a fence by corners (joint values) on the gantry.
+fn gantry_fence(corners: &str, more: &[&str]) -> common::Answer {
+    let dir = with_cell(GANTRY);
+    std::fs::write(dir.path().join("taught.csv"), format!("joint_1,joint_2,joint_3\n{corners}")).unwrap();
+    let args = ["teach", "cell.toml", "--shape", "fence", "--name", "yard", "--states", "taught.csv"];
+    elbowroom(dir.path(), &[&args[..], more].concat())
+}
+
+#[test]
+fn a_taught_fence_has_walls_around_its_corners_in_either_direction() {
+    for corners in ["0,0,0.02\n2,0,0\n2,1.5,0.01\n0,1.5,0\n", "0,1.5,0\n2,1.5,0.01\n2,0,0\n0,0,0.02\n"] {
+        let answer = gantry_fence(corners, &["--height", "1800", "--warning", "150"]).expect(0);
+        let expected = "height = 1800\nkind = \"forbidden\"\nwarning = 150\n";
+        assert!(
+            answer.stdout.contains("[fence.yard]\ncorners = [[") && answer.stdout.ends_with(expected),
+            "{}",
+            answer.stdout
+        );
+        for text in [&answer.stdout, &answer.stderr] {
+            assert!(text.contains("built 4 walls, 1800 mm high, z from 0 to 1800 mm, around 3 m2"), "{text}");
+        }
+        let cell = elbowroom::cell::Cell::parse("t.toml", &format!("{GANTRY}{}", answer.stdout)).unwrap();
+        let elbowroom::cell::RegionSolid::Walls(walls) = &cell.regions[0].solid else { panic!("{}", answer.stdout) };
+        // The inner side of each wall is where the corners are: 2 m and 1.5 m around the middle.
+        let middle = elbowroom::spatial::Vec3::new(1.0, 0.0, 0.9);
+        let mut distances: Vec<f64> = walls
+            .iter()
+            .map(|wall| (wall.in_world.translation - middle).dot(wall.outwards) - wall.solid.half_extents.y)
+            .collect();
+        distances.sort_by(f64::total_cmp);
+        let sum: f64 = distances.iter().sum();
+        assert!((sum - 3.5).abs() < 1e-6 && walls.len() == 4, "{distances:?}");
+        assert!(walls.iter().all(|wall| (wall.in_world.translation.z - 0.9).abs() < 1e-9));
+    }
+}
+
+#[test]
+fn corners_that_make_no_fence_are_refused() {
+    let square = "0,0,0\n1,0,0\n1,1,0\n0,1,0\n";
+    for (corners, more, words) in [
+        (
+            "0,0,0\n1,0,0\n",
+            &["--height", "500"][..],
+            "2 states; --shape fence needs 3 or more states and --height above 0",
+        ),
+        ("0,0,0\n1,0,0\n2,0,0\n", &["--height", "500"], "makes no fence: "),
+        ("0,0,0\n1,1,0\n1,0,0\n0,1,0\n", &["--height", "500"], "makes no fence: walls 1 and 3 cross each other"),
+        ("0,0,0\n1,0,0\n1,0,0\n0,1,0\n", &["--height", "500"], "makes no fence: wall 2 is shorter than 1 mm"),
+        (square, &[], "--shape fence needs --height above 0"),
+        (square, &["--height", "nan"], "--shape fence needs --height above 0"),
+        (square, &["--height=-500"], "--shape fence needs --height above 0"),
+        (square, &["--height", "500", "--inside"], "--shape fence has no --inside"),
+    ] {
+        let answer = gantry_fence(corners, more).expect(2);
+        assert_eq!(answer.stdout, "", "{corners} {more:?}");
+        assert!(answer.stderr.contains(words), "{corners} {more:?}: {}", answer.stderr);
+    }
+}
+
 #[test]
 fn points_that_determine_nothing_are_refused() {
     let straight = "0,0\n0,0\n0,0\n";

@@ -10,23 +10,20 @@ use crate::{Configuration, Grid, GridSpace};
 #[derive(Debug)]
 pub(crate) struct GridStates {
     cells: Vec<u32>,
-    /// The volumes of tool centre points: those of exchanged tools are attached and detached.
-    tcps: Vec<usize>,
     /// The digital outputs, one bit each.
     pub(crate) bits: u64,
 }
 
 impl GridStates {
     pub(crate) fn new(config: &Configuration) -> Self {
-        let tcps = config.volumes.iter().enumerate().filter(|(_, v)| v.part.is_tcp()).map(|(i, _)| i);
-        Self { cells: vec![0; config.grids.len()], tcps: tcps.collect(), bits: 0 }
+        Self { cells: vec![0; config.grids.len()], bits: 0 }
     }
 
     /// Finds the cells of the robot where it is now.
     pub(crate) fn update(&mut self, config: &Configuration, now: &Placement) {
         self.bits = 0;
         for (grid, cell) in config.grids.iter().zip(&mut self.cells) {
-            *cell = cell_of(grid, &self.tcps, config, now, *cell);
+            *cell = cell_of(grid, config, now, *cell);
             self.bits |= u64::from(*cell) << grid.output;
         }
     }
@@ -41,11 +38,11 @@ impl GridStates {
 }
 
 /// The cell of the robot; 0 if no tool is mounted.
-fn cell_of(grid: &Grid, tcps: &[usize], config: &Configuration, now: &Placement, former: u32) -> u32 {
+fn cell_of(grid: &Grid, config: &Configuration, now: &Placement, former: u32) -> u32 {
     match &grid.space {
         GridSpace::Tcp { frame_in_world } => {
-            let Some(tcp) = tcps.iter().find(|v| now.attached.contains(**v)) else { return 0 };
-            let p = frame_in_world.inverse_transform_point(now.volume_in_world[*tcp].translation);
+            let Some(tcp) = now.tcp(config) else { return 0 };
+            let p = frame_in_world.inverse_transform_point(now.volume_in_world[tcp.0].translation);
             grid.cell(p.to_array().into_iter().map(|at| Coordinate { at, turn: 0.0 }), former)
         }
         GridSpace::Joints(joints) => {

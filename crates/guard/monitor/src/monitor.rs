@@ -211,6 +211,11 @@ impl Monitor {
         self.sweep.detach(&self.config, volume)
     }
 
+    /// The tool centre point of the tool that is mounted; `None` if no tool is.
+    pub fn tcp(&self) -> Option<VolumeId> {
+        self.now.tcp(&self.config)
+    }
+
     /// Forgets where the robot was: the next joint values may be anywhere without being [too fast](Fault::TooFast). Call
     /// it when the robot is known to be at rest, after it was moved without ticks. Never allocates.
     ///

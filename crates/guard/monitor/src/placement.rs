@@ -4,7 +4,7 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::{Aabb, FrameMotion, Pose, Rotation};
 
 use crate::attached_volumes::AttachedVolumes;
-use crate::{Configuration, Region, RegionId, Snapshot, SourceId, SourceState};
+use crate::{Configuration, Region, RegionId, Snapshot, SourceId, SourceState, VolumeId};
 
 /// A region that follows a source of motion.
 #[derive(Debug, Clone, Copy)]
@@ -40,6 +40,13 @@ impl Placement {
             region_in_world,
             dynamic_regions: config.regions.iter().enumerate().filter_map(dynamic).collect(),
         }
+    }
+
+    /// The tool centre point of the tool that is mounted: those of exchanged tools are attached and detached. `None` if no
+    /// tool is mounted.
+    pub(crate) fn tcp(&self, config: &Configuration) -> Option<VolumeId> {
+        let is_there = |(i, volume): &(usize, &crate::Volume)| volume.part.is_tcp() && self.attached.contains(*i);
+        config.volumes.iter().enumerate().find(is_there).map(|(i, _)| VolumeId(i))
     }
 
     /// Places everything as in the snapshot. If it has no joint velocities, `velocity` (empty at rest) replaces them.

@@ -317,3 +317,33 @@ fn a_straight_line_is_followed_or_the_share_is_told() {
     }
     assert!(followed > 5 && blocked > 2 && unreachable > 2, "{followed} {blocked} {unreachable}");
 }
+
+/// The arm has seven joints: with one of them held it still follows lines, and the held joint does not move at all.
+#[test]
+fn a_straight_line_leaves_a_held_joint_where_it_is() {
+    let scene = cabinet();
+    let chain = &scene.robots()[0].robot.chain;
+    let mut random = Random(8);
+    let covers = covers(&scene);
+    let mut followed = 0;
+    for _ in 0..30 {
+        let from = free_values(&mut random, &scene, ROBOT).unwrap();
+        let start = state_at(&scene, ROBOT, &from);
+        let mut limits: Vec<(f64, f64)> = chain.lower().into_iter().zip(chain.upper()).collect();
+        limits[2] = (from[2], from[2]);
+        let by = Vec3::from([0; 3].map(|_| 0.2 * random.unit() - 0.1));
+        let begin = tip(&scene, &from);
+        let target_in_world = Pose::new(begin.rotation, begin.translation + by);
+        let (link, tip_in_link) = (chain.tip(), Pose::IDENTITY);
+        let line = LinearMove { link, tip_in_link, target_in_world, tolerance_m: 1e-3, tolerance_rad: 2e-3 };
+        let exact = RrtConnect::new(&scene, ROBOT).unwrap().with_limits(limits);
+        let mut planner = CoverRrtConnect::new(exact, &covers.0, &covers.1);
+        if let Ok(path) = planner.plan_linear(&start, &line, &settings(1_000_000)) {
+            followed += 1;
+            assert!(path.waypoints.iter().all(|q| q[2] == from[2]));
+            let last = tip(&scene, path.waypoints.last().unwrap());
+            assert!(last.inverse_mul(&target_in_world).translation.length() < 1e-8);
+        }
+    }
+    assert!(followed > 5, "{followed}");
+}

@@ -3,12 +3,13 @@
 use elbowroom_monitor::{Guards, Region, RegionKind};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::RobotId;
+use elbowroom_spatial::Vec3;
 
 use super::region_zones::RegionZones;
 use super::zone::{ReachBall, Side, Zone, ZoneSolid};
 use super::zone_frame::ZoneFrame;
 use crate::reach::Reach;
-use crate::{Cell, CellRegion, CellRegionId, Follow, RegionSolid, Units};
+use crate::{Cell, CellRegion, CellRegionId, FenceWall, Follow, RegionSolid, Units};
 
 /// By how much boxes of planes exceed the reach of the robot, m: a longer tool of the controller is covered, too.
 const BEYOND_REACH_M: f64 = 1.0;
@@ -57,31 +58,31 @@ fn request(zones: &mut RegionZones<'_>, cell: &Cell, frame: &ZoneFrame, ball: Re
         return;
     }
     miss_keys(zones, has_output, cell.units);
-    for (part, solid, side) in solids(zones.region, frame, ball) {
+    for RequestedSolid { part, solid, side, inwards } in solids(zones.region, frame, ball) {
         match solid {
-            Ok(solid) => request_solid(zones, &part, solid, side, stops),
+            Ok(solid) => request_solid(zones, &Zone { solid, side, stops, output: None, part, inwards }),
             Err(reason) => zones.miss(&part, &reason, Some("a box that encloses it, as a region of its own")),
         }
     }
 }
 
-/// The zones of a solid of a region: itself, and its warning zone.
-fn request_solid(zones: &mut RegionZones<'_>, part: &str, solid: ZoneSolid, side: Side, stops: bool) {
+/// The zones of a solid of a region, which is given as a zone without output: itself, and its warning zone.
+fn request_solid(zones: &mut RegionZones<'_>, of: &Zone) {
     let region = &zones.region.region;
-    if stops || region.output.is_some() {
-        zones.zones.push(Zone { solid, side, stops, output: region.output, part: part.to_owned() });
+    if of.stops || region.output.is_some() {
+        zones.zones.push(Zone { output: region.output, ..of.clone() });
     }
     let Some(output) = region.warning_output else { return };
-    let part = if part.is_empty() { "warning zone".to_owned() } else { format!("warning zone of {part}") };
-    let by_m = match side {
+    let part = if of.part.is_empty() { "warning zone".to_owned() } else { format!("warning zone of {}", of.part) };
+    let by_m = match of.side {
         Side::Inside => region.warning_m,
         Side::Outside => -region.warning_m,
     };
-    let Some(solid) = solid.grown(by_m) else {
+    let Some(solid) = of.solid.grown(by_m) else {
         zones.miss(&part, "it covers all that is free: its output would always be on", Some("a smaller `warning`"));
         return;
     };
-    zones.zones.push(Zone { solid, side, stops: false, output: Some(output), part });
+    zones.zones.push(Zone { solid, stops: false, output: Some(output), part, ..of.clone() });
 }
 
 /// Notes the keys of a region that no zone has.
@@ -115,24 +116,34 @@ fn unguarded(guards: Guards) -> Option<&'static str> {
     }
 }
 
-type NamedSolid = (String, Result<ZoneSolid, String>, Side);
+/// A solid of a region in the frame of the zones.
+struct RequestedSolid {
+    /// Which part of the region it is; empty for the whole of it.
+    part: String,
+    /// The solid, or why no controller has such a zone.
+    solid: Result<ZoneSolid, String>,
+    side: Side,
+    /// For a wall of a fence: the direction to the inside.
+    inwards: Option<Vec3>,
+}
 
 /// The solids of a region in the frame of the zones.
-fn solids(region: &CellRegion, frame: &ZoneFrame, ball: ReachBall) -> Vec<NamedSolid> {
+fn solids(region: &CellRegion, frame: &ZoneFrame, ball: ReachBall) -> Vec<RequestedSolid> {
     let Region { shape, anchor, shape_in_anchor, .. } = &region.region;
     let in_frame = frame.in_world.inverse_mul(&(*anchor * *shape_in_anchor));
-    let whole = |shape: &Shape, side| vec![(String::new(), ZoneSolid::new(shape, in_frame, ball), side)];
+    let whole = |shape: &Shape, side| {
+        let solid = ZoneSolid::new(shape, in_frame, ball);
+        vec![RequestedSolid { part: String::new(), solid, side, inwards: None }]
+    };
     match &region.solid {
         RegionSolid::Shape => whole(shape, Side::Inside),
         RegionSolid::AllBut(kept_in) => whole(kept_in, Side::Outside),
         RegionSolid::Walls(walls) => {
-            let wall = |(index, (cuboid, in_world)): (usize, &_)| {
-                let in_frame = frame.in_world.inverse_mul(in_world);
-                (
-                    format!("part {} of its walls", index + 1),
-                    ZoneSolid::new(&Shape::Cuboid(*cuboid), in_frame, ball),
-                    Side::Inside,
-                )
+            let wall = |(index, wall): (usize, &FenceWall)| RequestedSolid {
+                part: format!("part {} of its walls", index + 1),
+                solid: ZoneSolid::new(&Shape::Cuboid(wall.solid), frame.in_world.inverse_mul(&wall.in_world), ball),
+                side: Side::Inside,
+                inwards: Some(frame.in_world.inverse_transform_vector(-wall.outwards)),
             };
             walls.iter().enumerate().map(wall).collect()
         }

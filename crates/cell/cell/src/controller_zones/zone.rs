@@ -53,6 +53,8 @@ pub(super) struct Zone {
     pub output: Option<u8>,
     /// Which part of its region it is, such as `warning zone` or `wall 3`; empty for the whole of it.
     pub part: String,
+    /// For a wall of a fence: the direction to the inside, in the frame of the zones.
+    pub inwards: Option<Vec3>,
 }
 
 impl ZoneSolid {

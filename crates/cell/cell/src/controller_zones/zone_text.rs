@@ -1,21 +1,31 @@
 //! What the texts of all languages say in comments.
 
 use elbowroom_robot::RobotId;
+use elbowroom_spatial::Vec3;
 
 use super::region_zones::RegionZones;
 use super::zone::Zone;
 use super::zone_frame::ZoneFrame;
-use crate::Cell;
+use crate::{Cell, RegionSolid};
 
 /// Printable ASCII, one line: names of a cell may have any character, and comments of a controller may not.
 pub(super) fn ascii(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '?' }).collect()
 }
 
+/// What a fence is for a controller.
+const NOTE_OF_FENCES: [&str; 2] = [
+    "The zones of a fence are its walls: each stops the robot in the wall, and both sides of it are free. A robot that is",
+    "outside already is not stopped: start on the side that the comment of each wall names, in this frame.",
+];
+
 /// The first comments: whose zones these are, in which frame, and what no zone does.
 pub(super) fn head(cell: &Cell, robot: RobotId, frame: &ZoneFrame) -> Vec<String> {
+    let is_fence = |r: &crate::CellRegion| matches!(r.solid, RegionSolid::Walls(_)) && r.robots.contains(&robot);
+    let has_fence = cell.regions.iter().any(is_fence);
     let robot = &cell.robots[robot.0];
     let frame = frame.title();
+    let of_fences = NOTE_OF_FENCES.iter().filter(|_| has_fence).map(|line| (*line).to_owned());
     [
         format!("Zones of robot \"{}\", from the regions of the cell \"{}\".", robot.name, cell.name),
         format!("Written by elbowroom {}.", env!("CARGO_PKG_VERSION")),
@@ -26,8 +36,9 @@ pub(super) fn head(cell: &Cell, robot: RobotId, frame: &ZoneFrame) -> Vec<String
         "Move the robot slowly to the border of each zone before you rely on it. Not a certified safety function."
             .to_owned(),
     ]
-    .iter()
-    .map(|line| ascii(line))
+    .into_iter()
+    .chain(of_fences)
+    .map(|line| ascii(&line))
     .collect()
 }
 
@@ -43,7 +54,19 @@ pub(super) fn missing(regions: &[RegionZones<'_>]) -> Vec<String> {
 /// A comment that names the region, the part, and what the zone does.
 pub(super) fn title(zones: &RegionZones<'_>, zone: &Zone) -> String {
     let part = if zone.part.is_empty() { String::new() } else { format!(", {}", zone.part) };
+    let inwards = zone.inwards.map(|v| format!(" (the inside of the fence is towards {})", direction(v)));
+    let part = part + &inwards.unwrap_or_default();
     let life = if zones.is_temporary() { ", temporary" } else { "" };
     let kind = zones.region.region.kind.name();
     ascii(&format!("region \"{}\"{part}: {kind}{life}", zones.name()))
+}
+
+/// A direction as an axis, or as its coordinates.
+fn direction(v: Vec3) -> String {
+    let is_axis = |i: &usize| v.to_array()[*i].abs() > 1.0 - 1e-9;
+    if let Some(i) = (0..3).find(is_axis) {
+        return format!("{}{}", if v.to_array()[i] > 0.0 { '+' } else { '-' }, ["X", "Y", "Z"][i]);
+    }
+    let [x, y, z] = v.to_array().map(|c| format!("{:.3}", (c * 1e3).round() * 1e-3 + 0.0));
+    format!("[{x},{y},{z}]")
 }

@@ -9,7 +9,7 @@ use elbowroom_vision::Point2;
 
 use super::schema::{GATE, names};
 use super::sensor::two;
-use crate::fence::{Fence, FenceError, Gate, mesh_of_boxes};
+use crate::fence::{Fence, FenceError, Gate, mesh_of_walls};
 use crate::{RegionSolid, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
@@ -46,7 +46,7 @@ pub(super) fn solid(name: &str, t: &Table<'_>, units: Units) -> Result<(Region, 
     };
     let refused = |e: FenceError| refused(t, &corners, &e, units);
     let walls = fence.boxes().map_err(refused)?;
-    let mesh = mesh_of_boxes(&walls).map_err(|e| refused(e.into()))?;
+    let mesh = mesh_of_walls(&walls).map_err(|e| refused(e.into()))?;
     Ok((Region::solid(name, Shape::Mesh(mesh.into()), Pose::IDENTITY), RegionSolid::Walls(walls)))
 }
 

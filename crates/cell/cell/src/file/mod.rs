@@ -25,6 +25,7 @@ mod plausibility;
 mod poses;
 mod program;
 mod region;
+mod region_list;
 mod robot;
 mod schema;
 mod sensor;
@@ -41,6 +42,7 @@ use elbowroom_robot::{GeometryId, RobotId};
 
 pub use document::CellFile;
 pub(crate) use document::REGION_TABLES;
+pub(crate) use region_list::with_only_region;
 use robot::robot_of;
 pub use schema::key_reference;
 use schema::names;
@@ -263,19 +265,7 @@ fn monitoring(root: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<Monito
 }
 
 fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) -> Result<()> {
-    let mut known = definitions::Definitions {
-        robots: &cell.robots,
-        encoders: &cell.frame_sources.encoders,
-        objects: &cell.objects,
-        moving_objects: &cell.moving_objects,
-        pose_tracks: Vec::new(),
-    };
-    let mut regions = Vec::new();
-    for table in region::tables(root)? {
-        regions.push(table.read(cell.units, &mut known, warnings)?);
-    }
-    cell.frame_sources.pose_tracks = known.pose_tracks;
-    cell.regions = regions;
+    (cell.regions, cell.frame_sources.pose_tracks) = region_list::read(root, cell, warnings)?;
     Ok(())
 }
 

@@ -42,6 +42,7 @@ pub use path_goal::PathGoal;
 pub use point_path::PointPath;
 pub use request_validation::select_robot;
 pub use several::{RobotPath, RobotPathRequest, SeveralPathsAnswer, SeveralPathsRequest, plan_several};
+pub(crate) use tcp_motion::LINE_TOLERANCE;
 pub use tcp_motion::TcpMotion;
 
 /// A request for a path.

@@ -11,7 +11,7 @@ use super::kept_axis::KeptDirection;
 use super::path_goal::PathGoal;
 
 /// Largest distance of the TCP from a straight line between waypoints, m, and rotation from the orientation there, rad.
-const LINE_TOLERANCE: (f64, f64) = (5e-4, 1e-3);
+pub(crate) const LINE_TOLERANCE: (f64, f64) = (5e-4, 1e-3);
 
 /// The motion of the TCP on a path.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

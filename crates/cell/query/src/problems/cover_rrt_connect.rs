@@ -1,11 +1,10 @@
 //! RRT-Connect on sphere covers as the planner of problem sets, followed by RRT-Connect in the exact scene.
 
-use elbowroom_kinematics::JointLimits;
+use elbowroom_kinematics::{JointLimits, LinkId};
 use elbowroom_planner::{CoverModels, CoverObstacles, JointPath, RobotPlanner, RrtConnectError, TimedPath};
 
 use super::problem_scene::ROBOT;
-use super::rrt_connect;
-use super::{PlanningEngine, ProblemScene, ProblemSettings, Unsolved};
+use super::{PlanningEngine, ProblemScene, ProblemSettings, Unsolved, linear_move, rrt_connect};
 use crate::cover_cache::CoverCache;
 
 /// [`CoverRrtConnect`](elbowroom_planner::CoverRrtConnect), then [`RrtConnect`](elbowroom_planner::RrtConnect). All paths
@@ -36,6 +35,15 @@ impl PlanningEngine for CoverRrtConnectEngine {
     /// Plans to the goal that is found first.
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<JointPath, Unsolved> {
         self.with_planner(problem, settings, |planner| rrt_connect::solve(planner, problem, settings))?
+    }
+
+    fn solve_linear(
+        &mut self,
+        problem: &ProblemScene,
+        link: LinkId,
+        settings: &ProblemSettings,
+    ) -> Result<JointPath, Unsolved> {
+        self.with_planner(problem, settings, |planner| linear_move::plan(planner, problem, link, settings))?
     }
 
     fn time(

@@ -1,6 +1,6 @@
 //! Interface of the planners that solve a set of problems.
 
-use elbowroom_kinematics::JointLimits;
+use elbowroom_kinematics::{JointLimits, LinkId};
 use std::time::Duration;
 
 use elbowroom_planner::{JointPath, RrtConnectError, TimedPath};
@@ -14,6 +14,21 @@ pub trait PlanningEngine {
     /// # Errors
     /// No path was found.
     fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<JointPath, Unsolved>;
+
+    /// Moves a link straight from its pose at the start to its pose at one of the goals, in one posture, proven free. By
+    /// default no line is found.
+    ///
+    /// # Errors
+    /// No such line can be followed.
+    fn solve_linear(
+        &mut self,
+        problem: &ProblemScene,
+        link: LinkId,
+        settings: &ProblemSettings,
+    ) -> Result<JointPath, Unsolved> {
+        let _ = (problem, link, settings);
+        Err(RrtConnectError::LinearMoveWithoutCovers.into())
+    }
 
     /// Times a path that it found, within limits.
     ///

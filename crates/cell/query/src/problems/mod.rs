@@ -21,7 +21,7 @@
 //!     "goal_constraints": [{"joint_constraints": [{"joint_name": "waist", "position": 2.0}]}]}}}}"#;
 //! let problems = problem_set::parse("post.json".as_ref(), text)?.problems;
 //! let robot = robot::load(&urdf, &robot::LoadOptions::default())?.robot;
-//! let model = ProblemModel::new(&urdf, robot, "post.json".as_ref(), &problems)?;
+//! let model = ProblemModel::new(&urdf, robot, &[], "post.json".as_ref(), &problems)?;
 //! let mut durations = Vec::new();
 //! let results = run(&model, &problems, &ProblemSettings::default(), &mut RrtConnectEngine, &mut |result, timed| {
 //!     durations.extend(timed.map(|timed| timed.trajectory.duration_s()));
@@ -35,11 +35,14 @@ mod cover_rrt_connect;
 mod end_validity;
 mod engine;
 mod frames;
+mod joint_move;
 mod joint_values;
+mod linear_move;
 mod matrix;
 mod messages;
 mod model;
 mod motion_limits;
+mod moved_link;
 mod problem_scene;
 mod result;
 mod rrt_connect;

@@ -5,6 +5,7 @@ use std::path::Path;
 use elbowroom_cell::{OutOfReachProofs, QueryModel};
 use elbowroom_formats::Diagnostic;
 use elbowroom_formats::problem_set::PlanningProblem;
+use elbowroom_formats::srdf::Group;
 use elbowroom_kinematics::Chain;
 use elbowroom_robot::Robot;
 use elbowroom_scene::Scene;
@@ -26,15 +27,21 @@ pub struct ProblemModel {
 }
 
 impl ProblemModel {
-    /// Prepares a robot for problems. All problems are checked, so that none is refused after others have been solved.
+    /// Prepares a robot for problems; `groups` of its SRDF name the links that linear motions move. All problems are checked, so that none is refused after others have been solved.
     ///
     /// A joint that a problem does not plan stays at its start, even beyond its limits, such as the fingers of a gripper in
     /// a model with other fingers.
     ///
     /// # Errors
-    /// A goal that names no joint of the robot, an object in an unknown frame or attached to an unknown link, and
-    /// anything that a scene refuses.
-    pub fn new(urdf: &Path, mut robot: Robot, problem_file: &Path, problems: &[PlanningProblem]) -> Result<Self> {
+    /// A goal that names no joint of the robot, an object in an unknown frame or attached to an unknown link,
+    /// a linear motion of an unknown group or of joints that do not move its link, and anything that a scene refuses.
+    pub fn new(
+        urdf: &Path,
+        mut robot: Robot,
+        groups: &[Group],
+        problem_file: &Path,
+        problems: &[PlanningProblem],
+    ) -> Result<Self> {
         let limits: Vec<(f64, f64)> = robot.chain.lower().into_iter().zip(robot.chain.upper()).collect();
         let mut notes = Notes::default();
         let mut values = Vec::new();
@@ -51,7 +58,7 @@ impl ProblemModel {
         notes.warnings.extend(query_model.touching_at_rest());
         let scene = query_model.scene(OutOfReachProofs::Compute)?;
         let problem_file = problem_file.to_owned();
-        let base = BaseScene { scene, limits, problem_file };
+        let base = BaseScene { scene, limits, groups: groups.to_vec(), problem_file };
         for problem in problems {
             problem_scene::build(&base, problem, &mut notes)?;
         }

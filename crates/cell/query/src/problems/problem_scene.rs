@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use elbowroom_formats::problem_set::{AxisConstraint, PlanningProblem};
+use elbowroom_formats::problem_set::{AxisConstraint, PlanningProblem, RequestedMotion};
+use elbowroom_formats::srdf::Group;
 use elbowroom_formats::suggest;
 use elbowroom_kinematics::{Chain, LinkId};
 use elbowroom_planner::{PathConstraint, RrtConnect};
@@ -15,6 +16,7 @@ use super::frames::Frames;
 use super::joint_values::{self, JointValues};
 use super::matrix::skip_allowed;
 use super::messages::{Notes, ProblemKey, Result};
+use super::moved_link;
 use crate::plan::KeptDirection;
 
 /// The only robot.
@@ -27,8 +29,21 @@ pub(super) struct BaseScene {
     pub scene: Scene,
     /// Position limits of the robot's joints in the model, rad or m.
     pub limits: Vec<(f64, f64)>,
+    /// Groups of the robot's SRDF.
+    pub groups: Vec<Group>,
     /// The file of the problems, for messages.
     pub problem_file: PathBuf,
+}
+
+/// How the robot moves to a goal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Motion {
+    /// On any path.
+    Any,
+    /// Straight in joint space.
+    PointToPoint,
+    /// Straight with this link.
+    Linear(LinkId),
 }
 
 /// A problem as a scene: the robot among the objects, its start and goals. Coordinates are in the root link.
@@ -41,6 +56,7 @@ pub struct ProblemScene {
     pub(super) planned: Vec<bool>,
     /// Directions that axes of links keep, in the root link.
     kept: Vec<KeptDirection>,
+    pub(super) motion: Motion,
 }
 
 impl ProblemScene {
@@ -93,8 +109,15 @@ pub(super) fn build(base: &BaseScene, problem: &PlanningProblem, notes: &mut Not
     start.set_q(&scene, ROBOT, &values.start).map_err(refused)?;
     attach(problem, key, &scene, &ids, &mut start)?;
     let kept = problem.kept.iter().map(|kept| direction(kept, key, chain, &frames)).collect::<Result<_>>()?;
+    let motion = match problem.motion {
+        RequestedMotion::Any => Motion::Any,
+        RequestedMotion::PointToPoint => Motion::PointToPoint,
+        RequestedMotion::Linear => {
+            Motion::Linear(moved_link::of_group(chain, &base.groups, key, &problem.group, &values.planned)?)
+        }
+    };
     let JointValues { goals, planned, limits, .. } = values;
-    Ok(ProblemScene { scene, start, goals, limits, planned, kept })
+    Ok(ProblemScene { scene, start, goals, limits, planned, kept, motion })
 }
 
 fn direction(kept: &AxisConstraint, key: ProblemKey<'_>, chain: &Chain, frames: &Frames<'_>) -> Result<KeptDirection> {

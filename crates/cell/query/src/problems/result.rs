@@ -6,6 +6,7 @@ use elbowroom_planner::JointPath;
 use serde::Serialize;
 
 use super::Unsolved;
+use super::problem_scene::Motion;
 
 /// Result of one problem. Missing values are null: times of an invalid problem, lengths without a path.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -14,6 +15,8 @@ pub struct ProblemResult {
     pub set: String,
     /// Key in the set.
     pub id: String,
+    /// Motion that the request names: `LIN`, `PTP`; otherwise `None`.
+    pub motion: Option<&'static str>,
     /// True if the start and at least one goal are free.
     pub valid: bool,
     /// True if a path was found.
@@ -32,13 +35,22 @@ pub struct ProblemResult {
     pub cost_rad: Option<f64>,
     /// Duration of the timed path, s.
     pub duration_s: Option<f64>,
+    /// Largest distance of the link that a linear motion moves from its line, m.
+    pub line_deviation_m: Option<f64>,
+    /// Largest rotation of that link from the orientation on the line, rad.
+    pub line_deviation_rad: Option<f64>,
 }
 
 impl ProblemResult {
-    pub(super) fn invalid(set: &str, id: &str, reason: String) -> Self {
+    pub(super) fn invalid([set, id]: [&str; 2], motion: Motion, reason: String) -> Self {
         Self {
             set: set.to_owned(),
             id: id.to_owned(),
+            motion: match motion {
+                Motion::Any => None,
+                Motion::PointToPoint => Some("PTP"),
+                Motion::Linear(_) => Some("LIN"),
+            },
             valid: false,
             found: false,
             proven: false,
@@ -48,11 +60,13 @@ impl ProblemResult {
             cost_raw_rad: None,
             cost_rad: None,
             duration_s: None,
+            line_deviation_m: None,
+            line_deviation_rad: None,
         }
     }
 
-    pub(super) fn of(set: &str, id: &str, solution: &Result<JointPath, Unsolved>) -> Self {
-        let of_valid = Self { valid: true, reason: None, ..Self::invalid(set, id, String::new()) };
+    pub(super) fn of(key: [&str; 2], motion: Motion, solution: &Result<JointPath, Unsolved>) -> Self {
+        let of_valid = Self { valid: true, reason: None, ..Self::invalid(key, motion, String::new()) };
         match solution {
             Ok(path) => Self {
                 found: true,

@@ -29,8 +29,13 @@ impl PlanningEngine for RrtConnectEngine {
 
 impl From<RrtConnectError> for Unsolved {
     fn from(e: RrtConnectError) -> Self {
-        Self { reason: e.to_string(), planning: Duration::ZERO }
+        Self { reason: reason(&e), planning: Duration::ZERO }
     }
+}
+
+/// The message, without the prefix of the only robot's links.
+pub(super) fn reason(e: &RrtConnectError) -> String {
+    e.to_string().replace("`/", "`")
 }
 
 /// Plans to the goal that is found first.
@@ -46,8 +51,7 @@ pub(super) fn solve(
     } else {
         planner.plan_to_any(start, goals, &limits)
     };
-    // Without the prefix of the only robot's links.
-    answer.map_err(|e| Unsolved { reason: e.to_string().replace("`/", "`"), planning: begin.elapsed() })
+    answer.map_err(|e| Unsolved { reason: reason(&e), planning: begin.elapsed() })
 }
 
 /// Times a path.
@@ -63,7 +67,7 @@ pub(super) fn time(
 }
 
 /// Settings of the planner.
-fn rrt_settings(settings: &ProblemSettings, time_limit: Duration) -> RrtConnectSettings {
+pub(super) fn rrt_settings(settings: &ProblemSettings, time_limit: Duration) -> RrtConnectSettings {
     let (clearance_m, seed) = (settings.clearance_m, settings.seed);
     RrtConnectSettings { time_limit, clearance_m, seed, ..RrtConnectSettings::default() }
 }

@@ -36,6 +36,10 @@ pub struct SetSummary {
     pub cost_rad: Option<f64>,
     /// Mean duration, s.
     pub duration_s: Option<f64>,
+    /// Largest distance of a linear motion from its line, m; null if no linear motion is solved.
+    pub line_deviation_m: Option<f64>,
+    /// Largest rotation of a linear motion from the orientation on its line, rad.
+    pub line_deviation_rad: Option<f64>,
 }
 
 /// Figures of a sample.
@@ -109,6 +113,8 @@ impl SetSummary {
             cost_raw_rad: mean(&values(|r| r.cost_raw_rad)),
             cost_rad: mean(&values(|r| r.cost_rad)),
             duration_s: mean(&values(|r| r.duration_s)),
+            line_deviation_m: values(|r| r.line_deviation_m).into_iter().reduce(f64::max),
+            line_deviation_rad: values(|r| r.line_deviation_rad).into_iter().reduce(f64::max),
         }
     }
 }

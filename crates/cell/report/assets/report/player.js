@@ -71,6 +71,7 @@
     clock.textContent = `${t.toFixed(3)} s`;
     scrub.setAttribute('aria-valuetext', clock.textContent);
     showReadout(cell);
+    Perceived.list(byId('perceived'), track, t);
   }
 
   const end = () => { const times = Data.runs[run].t; return times.length ? times[times.length - 1] : 0; };
@@ -152,6 +153,7 @@
         robot: Data.robots[pair.robot].name, kind: pair.target.kind, name: pair.target.name, state: pair.state,
         distance_m: pair.distance ?? null, part: pair.part ?? null, on_robot_m: pair.onA ?? null, on_other_m: pair.onB ?? null,
       })),
+      perceived: Data.runs.length ? Perceived.known(Data.runs[run], t) : [], drawn: Stage.perceived(),
     }),
     seek: (time) => { moveJoints(false); seek(time); },
   };

@@ -63,5 +63,5 @@ const Stage = (() => {
     });
   }
 
-  return { show, fit: stage.fit };
+  return { show, fit: stage.fit, perceived: () => (perceived ? perceived.drawn() : []) };
 })();

@@ -1,12 +1,14 @@
 //! Distance of robots from a region that is to be switched on or moved.
 
+use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, CellRegion, Frames, configure};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{Life, Monitor, RegionKind};
+use elbowroom_monitor::{Life, Monitor, RegionKind, SourceState};
 use elbowroom_robot::RobotId;
 
 use crate::messages::JointState;
+use crate::node::AttachedVolumes;
 
 /// A robot and its distance from a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,38 +27,79 @@ const UNTIL_IT_COUNTS_S: f64 = 0.2;
 
 /// Computes the distance from a region of each robot that it guards against, with the parts that the robot carries.
 ///
-/// A robot has no distance if it is not heard, or if the region follows a robot that is not heard. A region that follows an
-/// encoder or a path is at its place `t_s` after the start of this process.
-///
-/// # Errors
-/// [`Diagnostic`] if no monitor accepts the region.
+/// The errors and the missing distances are those of [`ClearanceQuery`].
 pub(crate) fn clearances(
     cell: &Cell,
     region: &CellRegion,
     states: &[Option<JointState>],
     t_s: f64,
 ) -> Result<Vec<Clearance>, Diagnostic> {
-    let alone = with_only(cell, region);
-    let chains: Vec<Option<ChainState>> = alone.robots.iter().zip(states).map(|(r, s)| placed(r, s.as_ref())).collect();
-    let setups = configure::setups(&alone)?;
-    let monitors = configure::monitors(&alone, &setups)?;
-    let of_robot = |(robot, mut monitor): (&RobotId, Monitor)| {
-        let sources = sources(&alone, &setups[robot.0].sources, &chains, t_s);
-        let state = states[robot.0].as_ref().filter(|_| chains[robot.0].is_some());
-        let known = state.zip(sources).and_then(|(state, sources)| {
-            let are_attached = state.attached.iter().all(|a| monitor.attach(a.volume, &a.in_link).is_ok());
-            let mut query = monitor.region_distance(&sources);
-            query.set_q(&state.q);
-            let nearest = query.distances(f64::INFINITY).map(|(_, metres)| metres).next();
-            let stopping_m = query.motion_bound(&state.q, &at_standstill(cell, *robot, state));
-            nearest.filter(|_| are_attached).map(|metres| (metres, stopping_m))
-        });
-        let (distance_m, stopping_m) =
-            known.map_or((None, 0.0), |(distance_m, stopping_m)| (Some(distance_m), stopping_m));
-        Clearance { robot: *robot, distance_m, stopping_m }
-    };
-    let all = monitors.into_iter().enumerate().filter(|(i, _)| region.robots.contains(&RobotId(*i)));
-    Ok(all.map(|(i, monitor)| of_robot((&RobotId(i), monitor))).collect())
+    Ok(ClearanceQuery::new(cell, region)?.clearances(states, t_s))
+}
+
+/// The monitor of one robot, with what the robot carries.
+struct RobotMonitor {
+    robot: RobotId,
+    monitor: Monitor,
+    attached: AttachedVolumes,
+}
+
+/// The monitors of one region, for its distances from the robots again and again.
+pub(crate) struct ClearanceQuery {
+    alone: Cell,
+    setups: Vec<MonitorSetup>,
+    monitors: Vec<RobotMonitor>,
+}
+
+impl ClearanceQuery {
+    /// Prepares the distances from a region of the robots that it guards against.
+    ///
+    /// # Errors
+    /// [`Diagnostic`] if no monitor accepts the region.
+    pub(crate) fn new(cell: &Cell, region: &CellRegion) -> Result<Self, Diagnostic> {
+        let alone = with_only(cell, region);
+        let setups = configure::setups(&alone)?;
+        let monitors = configure::monitors(&alone, &setups)?.into_iter().enumerate();
+        let monitors = monitors.filter(|(i, _)| region.robots.contains(&RobotId(*i)));
+        let of_robot = |(i, monitor): (usize, Monitor)| {
+            let attached = AttachedVolumes::new(&setups[i].configuration);
+            RobotMonitor { robot: RobotId(i), monitor, attached }
+        };
+        let monitors = monitors.map(of_robot).collect();
+        Ok(Self { alone, setups, monitors })
+    }
+
+    /// The distances at these joint values, with the parts that the robots carry.
+    ///
+    /// A robot has no distance if it is not heard, or if the region follows a robot that is not heard. A region that
+    /// follows an encoder or a path is at its place `t_s` after the start of this process.
+    pub(crate) fn clearances(&mut self, states: &[Option<JointState>], t_s: f64) -> Vec<Clearance> {
+        let Self { alone, setups, monitors } = self;
+        let chains: Vec<Option<ChainState>> =
+            alone.robots.iter().zip(states).map(|(r, s)| placed(r, s.as_ref())).collect();
+        let of_robot = |own: &mut RobotMonitor| {
+            let robot = own.robot;
+            let state = states[robot.0].as_ref().filter(|_| chains[robot.0].is_some());
+            let sources = sources(alone, &setups[robot.0].sources, &chains, t_s);
+            let known = state.zip(sources).and_then(|(state, sources)| own.distance(alone, state, &sources));
+            let (distance_m, stopping_m) =
+                known.map_or((None, 0.0), |(distance_m, stopping_m)| (Some(distance_m), stopping_m));
+            Clearance { robot, distance_m, stopping_m }
+        };
+        monitors.iter_mut().map(of_robot).collect()
+    }
+}
+
+impl RobotMonitor {
+    /// Distance of the robot with what it carries from the only region, and the way of its points until it stops, m.
+    fn distance(&mut self, cell: &Cell, state: &JointState, sources: &[SourceState]) -> Option<(f64, f64)> {
+        let are_attached = self.attached.apply(&state.attached, &mut self.monitor, |_, _| {});
+        let mut query = self.monitor.region_distance(sources);
+        query.set_q(&state.q);
+        let nearest = query.distances(f64::INFINITY).map(|(_, metres)| metres).next();
+        let stopping_m = query.motion_bound(&state.q, &at_standstill(cell, self.robot, state));
+        nearest.filter(|_| are_attached).map(|metres| (metres, stopping_m))
+    }
 }
 
 /// Returns the cell with only this region, as a permanent forbidden region.
@@ -96,7 +139,7 @@ fn sources(
     follows: &[elbowroom_cell::Follow],
     chains: &[Option<ChainState>],
     t_s: f64,
-) -> Option<Vec<elbowroom_monitor::SourceState>> {
+) -> Option<Vec<SourceState>> {
     let is_known = |f: &elbowroom_cell::Follow| match f {
         elbowroom_cell::Follow::Robot { robot, .. } => chains[robot.0].is_some(),
         _ => true,
@@ -114,6 +157,7 @@ fn sources(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::messages::AttachedVolume;
 
     const CELL: &str = r#"
 version = 1
@@ -161,6 +205,39 @@ follow = { robot = "other", frame = "flange" }
         let follows = distance(1, &[Some(at(0.5)), Some(at(1.0))]);
         assert!(follows.len() == 1 && near(follows[0], 0.25), "{follows:?}");
         assert_eq!(distance(1, &[Some(at(0.5)), None]), [None]);
+    }
+
+    /// The tool that is mounted at the start counts until the controller names another one; a query is asked again and again.
+    #[test]
+    fn distances_are_those_of_the_tool_that_is_on_the_robot() {
+        let tools = "[robot.rail.tools.gripper]\nbox = { at = [0, 0, 50], size = [60, 60, 100] }\n\
+                     [robot.rail.tools.lance]\nbox = { at = [0, 0, 500], size = [60, 60, 1000] }\nmounted = false\n";
+        let cell = Cell::parse("rails.toml", &CELL.replace("[robot.other]", &format!("{tools}[robot.other]")));
+        let cell = cell.unwrap_or_else(|e| panic!("{e}"));
+        let mut query = ClearanceQuery::new(&cell, &cell.regions[0]).unwrap();
+        let attached = |tool: usize| -> Vec<AttachedVolume> {
+            let volumes = query.setups[0].tool_volumes(cell.robots[0].payload.tools[tool].link);
+            volumes.map(|(volume, v)| AttachedVolume { volume, in_link: v.in_link }).collect()
+        };
+        let [gripper, lance] = [attached(0), attached(1)];
+        let unknown = AttachedVolume { volume: elbowroom_monitor::VolumeId(99), ..lance[0] };
+        // The near side of the region is 1.3 m away, and the ball of the carriage has 0.05 m.
+        for (named, expected) in [
+            (Vec::new(), Some(1.2)),
+            (lance.clone(), Some(0.3)),
+            (gripper, Some(1.2)),
+            (vec![unknown], None),
+            (lance, Some(0.3)),
+            (Vec::new(), Some(1.25)),
+        ] {
+            let state = JointState { attached: named, ..at(0.0) };
+            let found = query.clearances(&[Some(state), None], 0.0)[0].distance_m;
+            let agree = match (found, expected) {
+                (Some(a), Some(b)) => (a - b).abs() < 1e-6,
+                (found, expected) => found == expected,
+            };
+            assert!(agree, "{found:?}, not {expected:?}");
+        }
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod requests;
 mod robot_overview;
 mod routes;
 mod server;
+mod taught_regions;
 mod teaching;
 
 pub(crate) use joints_heard::JointsHeard;

@@ -8,12 +8,13 @@ use elbowroom_monitor::{AccessClass, Life, RegionKind};
 use elbowroom_robot::RobotId;
 use serde::Serialize;
 
-use super::clearance::clearances;
+use super::clearance::{ClearanceQuery, clearances};
 use super::joints_heard::JointsHeard;
 use super::nodes_heard::NodesHeard;
 use super::refusal::Refusal;
 use super::requests::{Clear, Switch};
 use super::robot_overview::RobotOverview;
+use super::taught_regions::TaughtRegions;
 use crate::arbiter_service::{ArbiterService, NotCleared};
 use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
@@ -40,6 +41,7 @@ pub(crate) struct ControlParts {
 pub(crate) struct RequestHandler {
     pub(super) parts: ControlParts,
     log: Mutex<ControlLog>,
+    taught: Mutex<TaughtRegions<ClearanceQuery>>,
 }
 
 /// A change that was made.
@@ -93,7 +95,7 @@ pub(crate) struct RegionOverview {
 
 impl RequestHandler {
     pub(crate) fn new(parts: ControlParts, log: ControlLog) -> Self {
-        Self { parts, log: Mutex::new(log) }
+        Self { parts, log: Mutex::new(log), taught: Mutex::default() }
     }
 
     /// Logs the start of the service, and which temporary regions are on.
@@ -125,6 +127,11 @@ impl RequestHandler {
 
     pub(super) fn log(&self) -> MutexGuard<'_, ControlLog> {
         locked(&self.log)
+    }
+
+    /// The regions that are being taught.
+    pub(super) fn taught(&self) -> MutexGuard<'_, TaughtRegions<ClearanceQuery>> {
+        locked(&self.taught)
     }
 
     /// Lists everything that may be changed.

@@ -1,14 +1,15 @@
 //! What teaching at a robot asks for: how far it is from the region that is being taught.
 
-use elbowroom_cell::CellRegion;
+use elbowroom_cell::{CellRegion, cell_with_only};
 use elbowroom_robot::RobotId;
 use serde::Serialize;
 
-use super::clearance::clearances;
+use super::clearance::ClearanceQuery;
 use super::refusal::Refusal;
-use super::region_changes::{refused, wrong};
-use super::request_handler::{RequestHandler, find};
+use super::region_changes::wrong;
+use super::request_handler::RequestHandler;
 use super::requests::Taught;
+use super::taught_regions::TaughtRegion;
 
 /// The distance of a robot from a region.
 #[derive(Debug, Clone, Serialize)]
@@ -20,20 +21,25 @@ pub(crate) struct Distance {
 
 impl RequestHandler {
     /// The distance of a robot from a region that the cell does not have yet.
+    ///
+    /// A panel asks several times a second for the same region: its monitor is built at the first question, without the
+    /// rest of the cell.
     pub(crate) fn distance(&self, request: &Taught) -> Result<Distance, Refusal> {
-        let present = self.parts.keeper.present();
-        let robots = &present.cell.robots;
-        let robot = robots.iter().position(|r| r.name == request.robot).map(RobotId).ok_or_else(|| {
-            let names: Vec<&str> = robots.iter().map(|r| r.name.as_str()).collect();
+        let cell = self.parts.keeper.present().cell;
+        let robot = cell.robots.iter().position(|r| r.name == request.robot).map(RobotId).ok_or_else(|| {
+            let names: Vec<&str> = cell.robots.iter().map(|r| r.name.as_str()).collect();
             Refusal::new(404, format!("there is no robot `{}`", request.robot))
                 .help(format!("one of {}", names.join(", ")))
         })?;
-        let edited = self.parts.versions.edited().map_err(refused)?;
-        let table = edited.table_of(&request.region, &request.toml).map_err(wrong)?;
-        let with = self.with(&present, &request.region, Some(&table))?;
-        let (_, region) = find(&with.cell, &request.region)?;
-        let region = CellRegion { robots: vec![robot], ..region.clone() };
-        let found = clearances(&with.cell, &region, &self.parts.joints.states(), self.parts.clock.seconds())?;
+        let key = TaughtRegion { robot, region: request.region.clone(), toml: request.toml.clone() };
+        let mut taught = self.taught();
+        let query = taught.query(key, || {
+            let alone = cell_with_only(&cell, &request.region, &request.toml).map_err(wrong)?;
+            let region = &alone.regions[0];
+            let region = CellRegion { robots: vec![robot], ..region.clone() };
+            Ok::<_, Refusal>(ClearanceQuery::new(&alone, &region)?)
+        })?;
+        let found = query.clearances(&self.parts.joints.states(), self.parts.clock.seconds());
         let distance_m = found.first().and_then(|clearance| clearance.distance_m);
         Ok(Distance { robot: request.robot.clone(), distance_m })
     }

@@ -259,7 +259,8 @@ impl Sender {
         events.map(event).collect()
     }
 
-    /// Computes the pose of the TCP in the world at the joint values of the sample.
+    /// Computes the pose of the TCP in the world at the joint values of the sample: that of the tool that is mounted, as
+    /// the grids have it.
     fn tcp(&mut self, configuration: &Configuration) -> Option<Pose> {
         let q = self.sample.joint_positions();
         if q.len() != self.chain.q.len() {
@@ -268,6 +269,7 @@ impl Sender {
         self.chain.q.copy_from_slice(q);
         configuration.chain().forward(&mut self.chain);
         let robot = &self.cell.robots[self.robot.0];
-        Some(robot.base_in_world * self.chain.link_in_root(robot.flange) * robot.tcp_in_flange)
+        let link = configuration.volumes()[self.sample.tcp()?.0].link;
+        Some(robot.base_in_world * self.chain.link_in_root(link) * robot.tcp_in_link(link))
     }
 }

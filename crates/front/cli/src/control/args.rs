@@ -142,11 +142,13 @@ pub(crate) struct AddArgs {
 #[derive(Debug, Args)]
 #[command(
     after_help = "The points are the same as for `elbowroom teach`: move the robot to each, and press Enter. Then move it to the obstacle and see
-its distance from the region, which should be 0 where the tool touches the obstacle.
+its distance from the region, which should be 0 where the tool touches the obstacle. Before all
+points are there, the distance is from what they determine. A fence takes corners until c closes it.
 
 Examples:
   elbowroom control teach trolley --robot left --shape box --secret panel.secret >> cell.toml
-  elbowroom control teach trolley --robot left --shape box --warning 200 --add --secret panel.secret"
+  elbowroom control teach trolley --robot left --shape box --warning 200 --add --secret panel.secret
+  elbowroom control teach yard --robot left --shape fence --height 2000 --secret panel.secret"
 )]
 pub(crate) struct TeachAtRobotArgs {
     /// Name of the region

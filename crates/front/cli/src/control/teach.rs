@@ -6,7 +6,6 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 
 use elbowroom::cell::Units;
-use elbowroom::monitor::Region;
 use elbowroom::spatial::Vec3;
 use elbowroom::spatial::units::{AngleUnit, LengthUnit};
 use serde_json::{Value, json};
@@ -14,7 +13,10 @@ use serde_json::{Value, json};
 use super::args::TeachAtRobotArgs;
 use super::client::Client;
 use crate::output::{Failure, note};
-use crate::taught_region::{TaughtRegion, points_of};
+use crate::taught_fence::FEWEST_CORNERS;
+use crate::taught_part::part;
+use crate::taught_region::{TaughtRegion, TaughtSolid, points_of};
+use crate::taught_shape::TaughtShape;
 
 /// Time between two questions where the robot is.
 const PERIOD: Duration = Duration::from_millis(200);
@@ -63,11 +65,16 @@ impl<'a> Teacher<'a> {
         let (name, is_temporary) = (self.args.region.as_str(), !self.args.permanent);
         let taught = TaughtRegion { name, shape, units: self.units, is_temporary };
         taught.check_arguments()?;
+        if shape.shape == TaughtShape::Fence && self.args.add {
+            let what = "a fence is not added to a running cell";
+            let help = "--shape fence without --add, and the table into the cell file";
+            return Err(Failure::Wrong(format!("{what}\n  write: {help}")));
+        }
         self.place()?;
         loop {
-            let points = self.points()?;
-            let made = taught.region(&points).and_then(|r| taught.built(&r, &points).map(|built| (r, built)));
-            let (region, built): (Region, Vec<String>) = match made {
+            let points = self.points(&taught)?;
+            let made = taught.solid(&points).and_then(|solid| Ok((taught.built(&solid, &points)?, solid)));
+            let (built, solid): (Vec<String>, TaughtSolid) = match made {
                 Ok(made) => made,
                 Err(why) => {
                     note(format_args!("{why}: teach the points again"));
@@ -75,7 +82,7 @@ impl<'a> Teacher<'a> {
                 }
             };
             built.iter().for_each(note);
-            let text = taught.toml(&region);
+            let text = taught.toml(&solid);
             taught.check(&text, Path::new("the taught points"))?;
             if self.is_accepted(&text)? {
                 return Ok(text);
@@ -84,36 +91,69 @@ impl<'a> Teacher<'a> {
     }
 
     /// The places to which the person moves the robot.
-    fn points(&self) -> Result<Vec<Vec3>, Failure> {
-        let (robot, wanted) = (&self.args.robot, points_of(self.args.shape.shape));
-        let what = if self.args.shape.flange { "flange" } else { "TCP" };
+    fn points(&self, taught: &TaughtRegion<'_>) -> Result<Vec<Vec3>, Failure> {
+        let shape = self.args.shape.shape;
+        let wanted = points_of(shape);
+        let is_fence = shape == TaughtShape::Fence;
         let mut points = Vec::new();
-        for (i, point) in wanted.iter().enumerate() {
-            let number = format!("{} of {}", i + 1, wanted.len());
-            note(format_args!("{number}: move the {what} of {robot} to {point}, then press Enter (q ends)"));
-            self.wait(&[""], || self.place().map(|p| format!("{what} at {}", self.shown(p.at))))?;
-            let Place { at, moves } = self.place()?;
-            note(format_args!("{number}: {point} at {}", self.shown(at)));
-            if moves {
-                note(format_args!("{robot} is moving: the point is where it was a moment ago"));
+        while is_fence || points.len() < wanted.len() {
+            let count = points.len() + 1;
+            let may_close = is_fence && count > FEWEST_CORNERS;
+            let number = if is_fence { format!("corner {count}") } else { format!("{count} of {}", wanted.len()) };
+            let point = wanted[if is_fence { 0 } else { count - 1 }];
+            match self.point(taught, &points, [&number, point], may_close)? {
+                Some(at) => points.push(at),
+                None => break,
             }
-            points.push(at);
         }
         Ok(points)
+    }
+
+    /// The place of one more point; `None` if the person closes the fence.
+    fn point(
+        &self,
+        taught: &TaughtRegion<'_>,
+        before: &[Vec3],
+        [number, point]: [&str; 2],
+        may_close: bool,
+    ) -> Result<Option<Vec3>, Failure> {
+        let (robot, part) = (&self.args.robot, part(taught, before));
+        let what = if self.args.shape.flange { "flange" } else { "TCP" };
+        let (known, closes) = if may_close { (&["", "c"][..], "c closes the fence, ") } else { (&[""][..], "") };
+        note(format_args!("{number}: move the {what} of {robot} to {point}, then press Enter ({closes}q ends)"));
+        let from_part = || part.as_ref().and_then(|part| self.distance(&part.toml, part.what).ok());
+        let typed = self.wait(known, || {
+            let text = self.place().map(|p| format!("{what} at {}", self.shown(p.at)))?;
+            Ok(from_part().map_or_else(|| text.clone(), |distance| format!("{text}; {distance}")))
+        })?;
+        if typed == "c" {
+            return Ok(None);
+        }
+        let Place { at, moves } = self.place()?;
+        note(format_args!("{number}: {point} at {}", self.shown(at)));
+        from_part().into_iter().for_each(note);
+        if moves {
+            note(format_args!("{robot} is moving: the point is where it was a moment ago"));
+        }
+        Ok(Some(at))
+    }
+
+    /// The distance of the robot from a region or a part of one, in words.
+    fn distance(&self, table: &str, what: &str) -> Result<String, Failure> {
+        let robot = &self.args.robot;
+        let request = json!({ "robot": robot, "region": self.args.region, "toml": table });
+        let answer = self.client.distance(&request)?;
+        Ok(match answer["distance_m"].as_f64() {
+            Some(metres) => format!("{robot} is {} from {what}", self.units.show_length(metres)),
+            None => format!("{robot} is not heard"),
+        })
     }
 
     /// Shows the distance of the robot from the region, so that it can be compared with the obstacle; returns whether the
     /// person takes the region.
     fn is_accepted(&self, text: &str) -> Result<bool, Failure> {
         let robot = &self.args.robot;
-        let request = json!({ "robot": robot, "region": self.args.region, "toml": text });
-        let distance = || {
-            let answer = self.client.distance(&request)?;
-            Ok(match answer["distance_m"].as_f64() {
-                Some(metres) => format!("{robot} is {} from the region", self.units.show_length(metres)),
-                None => format!("{robot} is not heard"),
-            })
-        };
+        let distance = || self.distance(text, "the region");
         note("compare it with the obstacle: move the robot there and see its distance from the region");
         note("Enter takes the region, r teaches it again, q ends");
         if self.args.add && !self.args.off {
@@ -133,8 +173,8 @@ impl<'a> Teacher<'a> {
                     "q" => return Err(Failure::Wrong("nothing was taught: ended by q".into())),
                     other if known.contains(&other) => return Ok(other.to_owned()),
                     other => {
-                        let more = if known.contains(&"r") { ", r" } else { "" };
-                        note(format_args!("`{other}` is not an answer here: Enter{more} or q"));
+                        let more = [&["Enter"], &known[1..]].concat().join(", ");
+                        note(format_args!("`{other}` is not an answer here: {more} or q"));
                     }
                 },
                 Err(RecvTimeoutError::Disconnected) => {

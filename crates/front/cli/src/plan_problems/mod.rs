@@ -29,7 +29,8 @@ pub(crate) fn run(urdf: &Path, file: &Path, args: &PlanArgs) -> Result<ExitStatu
     let options = LoadOptions { srdf: args.problems.srdf.clone(), ..LoadOptions::default() };
     let loaded = robot::load(urdf, &options)?;
     loaded.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
-    let model = ProblemModel::new(urdf, loaded.robot, file, &problems)?;
+    let groups = loaded.srdf.as_ref().map_or(&[][..], |srdf| &srdf.groups);
+    let model = ProblemModel::new(urdf, loaded.robot, groups, file, &problems)?;
     model.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     check_speeds(urdf, &model, args)?;
     let mut files = args.problems.paths.as_deref().map(PathFiles::create).transpose()?;

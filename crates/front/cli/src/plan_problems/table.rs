@@ -11,7 +11,7 @@ const WIDE: usize = 100;
 
 /// Formats a row per set and one for all sets, then the problems without a path.
 pub(super) fn text(summary: &ProblemSummary, results: &[ProblemResult], width: usize) -> String {
-    let columns = columns(width >= WIDE);
+    let columns = columns(width >= WIDE, summary.all.line_deviation_m.is_some());
     let fixed: usize = columns.iter().map(|c| c.width).sum();
     let longest = summary.sets.iter().map(|s| s.set.chars().count()).max().unwrap_or(0);
     let name_width = width.saturating_sub(fixed).max(12).min(longest + 1).max("all".len());
@@ -41,10 +41,11 @@ struct Column {
     value: fn(&SetSummary) -> String,
 }
 
-/// Returns the columns. The narrow table omits the totals, the mean and the raw lengths.
-fn columns(wide: bool) -> Vec<Column> {
+/// Returns the columns. The narrow table omits the totals, the mean and the raw lengths; without linear motions there is no
+/// deviation.
+fn columns(wide: bool, with_lines: bool) -> Vec<Column> {
     let column = |heading, width, value| Column { heading, width, value };
-    let all = vec![
+    let mut all = vec![
         (true, column(["", "total"], 6, |s| s.total.to_string())),
         (false, column(["", "valid"], 6, |s| s.valid.to_string())),
         (false, column(["", "solved"], 7, |s| s.solved.to_string())),
@@ -57,12 +58,19 @@ fn columns(wide: bool) -> Vec<Column> {
         (false, column(["length", "rad"], 7, |s| number(s.cost_rad))),
         (false, column(["time", "s"], 6, |s| number(s.duration_s))),
     ];
+    if with_lines {
+        all.push((false, column(["off", "line mm"], 8, |s| millimetres(s.line_deviation_m))));
+    }
     all.into_iter().filter(|(only_wide, _)| wide || !only_wide).map(|(_, column)| column).collect()
 }
 
 fn milliseconds(of: Option<Statistics>, pick: fn(&Statistics) -> f64) -> String {
     let Some(ms) = of.map(|t| pick(&t) / 1000.0) else { return "-".into() };
     if ms < 10.0 { format!("{ms:.3}") } else { format!("{ms:.1}") }
+}
+
+fn millimetres(of: Option<f64>) -> String {
+    of.map_or_else(|| "-".into(), |metres| format!("{:.3}", 1000.0 * metres))
 }
 
 fn number(of: Option<f64>) -> String {

@@ -54,7 +54,8 @@ impl CoverRrtConnect<'_> {
         let from = self.validator().ends(start, start.q(robot), settings)?[0].clone();
         self.exact.free_margin_m(PathEnd::Start, &from)?;
         let placed = self.exact.placed_robot();
-        let mut follower = LineFollower::new(&placed.robot.chain, placed.base_in_world, line, &from);
+        let chain = self.exact.validator.bounds.narrowed_chain(&placed.robot.chain);
+        let mut follower = LineFollower::new(&chain, placed.base_in_world, line, &from);
         let mut waypoints = vec![from];
         while follower.share < 1.0 {
             let before = &waypoints[waypoints.len() - 1];

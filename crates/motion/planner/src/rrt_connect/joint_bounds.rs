@@ -106,6 +106,18 @@ impl JointBounds {
         }
     }
 
+    /// A chain whose independent joints have these limits, so that inverse kinematics leaves a joint that is held where it
+    /// is.
+    pub fn narrowed_chain(&self, chain: &Chain) -> Chain {
+        let mut joints = chain.joints().to_vec();
+        for (i, id) in chain.active_joints().iter().enumerate() {
+            let limits = &mut joints[id.0].limits;
+            (limits.lower, limits.upper) = (self.lower[i], self.upper[i]);
+        }
+        // Contradictory limits, which no configuration satisfies, are not a chain.
+        Chain::new(chain.name(), chain.links().to_vec(), joints).unwrap_or_else(|_| chain.clone())
+    }
+
     /// Clamps values to the limits.
     pub fn clamp(&self, q: &mut [f64]) {
         q.iter_mut().enumerate().for_each(|(i, v)| *v = v.max(self.lower[i]).min(self.upper[i]));

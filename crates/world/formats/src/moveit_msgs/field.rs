@@ -21,6 +21,8 @@ pub(crate) struct Location<'a> {
     pub(crate) part: String,
     /// Text of a YAML document, for line numbers.
     pub(crate) yaml: Option<&'a str>,
+    /// Path of the root field in that document; empty for the document itself.
+    pub(crate) yaml_path: String,
 }
 
 /// A value of the document, with its location.
@@ -43,7 +45,10 @@ impl<'a> Field<'a> {
     }
 
     fn line(&self) -> Option<usize> {
-        self.location.yaml.map(|text| yaml::line_of(text, self.location.file, &self.path))
+        let root = &self.location.yaml_path;
+        let dot = if root.is_empty() || self.path.is_empty() { "" } else { "." };
+        let path = format!("{root}{dot}{}", self.path);
+        self.location.yaml.map(|text| yaml::line_of(text, self.location.file, &path))
     }
 
     fn sentence(&self, what: impl std::fmt::Display) -> String {

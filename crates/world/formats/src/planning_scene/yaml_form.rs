@@ -13,7 +13,7 @@ const LAYOUT: &str =
 
 pub(super) fn parse(text: &str, file: &Path) -> Result<PlanningScene, Diagnostic> {
     let document = yaml::parse(text, file)?;
-    let location = Location { file, part: String::new(), yaml: Some(text) };
+    let location = Location { file, part: String::new(), yaml: Some(text), yaml_path: String::new() };
     let root = Field::root(&location, &document);
     if !document.is_object() {
         return Err(root.error("is no planning scene", LAYOUT));

@@ -10,12 +10,15 @@
 //! | `scene.robot_state`, `request.start_state` | joint values, pose of the base, attached objects; the latter overrides |
 //! | `request.goal_constraints` | joint values; several are alternatives |
 //! | `request.path_constraints` | orientation constraints that leave turns about one axis free |
+//! | `request.pipeline_id`, `request.planner_id` | the motions `LIN` and `PTP` of `MoveIt`'s planner for industrial robots |
+//! | `request.group_name` | the group whose tip a linear motion moves |
 //!
 //! Other content is ignored. Content that would make an answer wrong is refused: an octomap with data, goals that are
-//! poses, and other path constraints.
+//! poses, other path constraints, and motions on circles (`CIRC`).
 
 mod document;
 mod goal;
+mod motion;
 mod path_constraint;
 mod problem;
 #[cfg(test)]
@@ -32,11 +35,15 @@ use crate::{Diagnostic, input};
 use document::{Entries, LAYOUT};
 
 pub use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
+pub use motion::RequestedMotion;
 pub use path_constraint::AxisConstraint;
 pub use problem::PlanningProblem;
 
 /// Largest size of a file, bytes. A parsed document takes several times the memory of its text.
 const MAX_BYTES: u64 = 256 << 20;
+
+/// Largest size of a file, bytes, whose fields have lines in messages: the text is parsed again to find them.
+const MAX_BYTES_WITH_LINES: usize = 16 << 20;
 
 /// The problems of a file.
 #[derive(Debug, Clone)]
@@ -86,7 +93,10 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ProblemFile, Diagnostic> {
     let mut problems = Vec::new();
     for (set, entries) in &sets.0 {
         for (id, value) in &entries.0 {
-            let location = Location { file, part: format!("set `{set}`, problem `{id}`: "), yaml: None };
+            // JSON is YAML, too.
+            let yaml = (text.len() <= MAX_BYTES_WITH_LINES).then_some(&*text);
+            let part = format!("set `{set}`, problem `{id}`: ");
+            let location = Location { file, part, yaml, yaml_path: format!("{set}.{id}") };
             problems.push(problem([set, id], &Field::root(&location, value), &mut reading)?);
         }
     }
@@ -99,6 +109,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ProblemFile, Diagnostic> {
 fn problem([set, id]: [&str; 2], root: &Field<'_>, reading: &mut Reading) -> Result<PlanningProblem, Diagnostic> {
     let scene = root.require("scene", LAYOUT)?;
     let request = root.require("request", LAYOUT)?;
+    let motion = motion::requested_motion(&request)?;
     let mut state = robot_state::RobotState::default();
     for at in [scene.get("robot_state")?, request.get("start_state")?].into_iter().flatten() {
         state.overlay(robot_state::parse(&at, reading)?);
@@ -116,5 +127,7 @@ fn problem([set, id]: [&str; 2], root: &Field<'_>, reading: &mut Reading) -> Res
         start: state.joints,
         goals: goal::goals(&request)?,
         kept: path_constraint::axis_constraints(&request)?,
+        motion,
+        group: request.text_of("group_name")?.to_owned(),
     })
 }

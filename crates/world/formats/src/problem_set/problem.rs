@@ -2,6 +2,7 @@
 
 use elbowroom_spatial::Pose;
 
+use super::motion::RequestedMotion;
 use super::path_constraint::AxisConstraint;
 use crate::moveit_msgs::types::{AllowedCollisions, AttachedObject, CollisionObject, FixedFrame, JointValue};
 
@@ -28,4 +29,8 @@ pub struct PlanningProblem {
     pub goals: Vec<Vec<JointValue>>,
     /// Axes of links that keep their directions along the path.
     pub kept: Vec<AxisConstraint>,
+    /// How the robot moves.
+    pub motion: RequestedMotion,
+    /// Name of the group of joints that the request is for; may be empty.
+    pub group: String,
 }

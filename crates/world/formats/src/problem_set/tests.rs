@@ -195,7 +195,7 @@ fn errors_name_file_set_problem_field_and_a_remedy() {
     ];
     for (pointer, value, what, hint) in cases {
         let message = refused(&pointer, value);
-        let start = "set.json: set `shelf`, problem `7`: ";
+        let start = "set.json:1: set `shelf`, problem `7`: ";
         assert!(message.starts_with(start) && message.contains(what), "{pointer}: {message}");
         assert!(message.split("write: ").nth(1).is_some_and(|h| h.contains(hint)), "{pointer}: {message}");
     }
@@ -211,6 +211,49 @@ fn errors_name_file_set_problem_field_and_a_remedy() {
         let message = parse_problem(&constrained).unwrap_err().message;
         assert!(message.contains(words), "{message}");
     }
+}
+
+#[test]
+fn motions_of_the_industrial_planner_are_told_by_its_names() {
+    let pilz = "pilz_industrial_motion_planner";
+    let motion = |pipeline: Value, planner: Value| {
+        let mut requested = complete();
+        requested["request"]["pipeline_id"] = pipeline;
+        requested["request"]["planner_id"] = planner;
+        parse_problem(&requested).map(|mut file| file.problems.remove(0).motion)
+    };
+    let cases = [
+        (json!(pilz), json!("LIN"), RequestedMotion::Linear),
+        (Value::Null, json!("LIN"), RequestedMotion::Linear),
+        (json!(""), json!("PTP"), RequestedMotion::PointToPoint),
+        (json!("ompl"), json!("RRTConnect"), RequestedMotion::Any),
+        (Value::Null, json!("BKPIECEGood"), RequestedMotion::Any),
+        (json!("ompl"), Value::Null, RequestedMotion::Any),
+    ];
+    for (pipeline, planner, expected) in cases {
+        assert_eq!(motion(pipeline.clone(), planner.clone()).unwrap(), expected, "{pipeline} {planner}");
+    }
+    for (pipeline, planner, what, hint) in [
+        (json!(pilz), json!("CIRC"), "`request.planner_id` is \"CIRC\"", "\"LIN\" once per chord"),
+        (Value::Null, json!("CIRC"), "circles are not supported", "\"PTP\""),
+        (json!(pilz), json!("LIM"), "\"LIM\", which is no planner", "LIN"),
+        (Value::Null, json!("lin"), "\"lin\", which is no planner", "LIN"),
+        (json!(pilz), Value::Null, "has no `planner_id`", "\"planner_id\": \"LIN\""),
+        (json!("ompl"), json!("LIN"), "`request.pipeline_id` is \"ompl\"", pilz),
+        (json!(pilz), json!(5), "`request.planner_id` is a number", "a text"),
+    ] {
+        let message = motion(pipeline, planner).expect_err(what).to_string();
+        assert!(message.contains(what), "{message}");
+        assert!(message.split("write: ").nth(1).is_some_and(|h| h.contains(hint)), "{message}");
+    }
+    // The constraints of a circle do not hide that it is one.
+    let mut circle = complete();
+    circle["request"]["planner_id"] = json!("CIRC");
+    circle["request"]["path_constraints"] = json!({"name": "center", "position_constraints": [{}]});
+    let text = serde_json::to_string_pretty(&json!({"arcs.of": {"a[0]": circle}})).unwrap();
+    let error = parse(Path::new("set.json"), text.as_bytes()).unwrap_err();
+    let line = 1 + text.lines().position(|line| line.contains("planner_id")).unwrap();
+    assert!(error.message.contains("CIRC") && error.line == Some(line), "{error}, not {line}");
 }
 
 #[test]
