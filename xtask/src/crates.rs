@@ -9,7 +9,7 @@ pub const GROUPS: [(&str, &[&str]); 7] = [
     ("base", &["testkit", "spatial", "proximity", "kinematics", "robot"]),
     ("world", &["diagnostic", "scene", "formats", "validity", "inspect"]),
     ("guard", &["interlock", "monitor"]),
-    ("motion", &["cspace", "planner", "avoidance", "shared_control", "cooperation", "vision", "perception"]),
+    ("motion", &["cspace", "planner", "avoidance", "shared_control", "vision", "cooperation", "perception"]),
     ("cell", &["access", "cell", "query", "sim", "report"]),
     ("connect", &["status", "ros2", "recording", "view", "live"]),
     ("front", &["elbowroom", "capi", "cli", "python"]),

@@ -64,7 +64,11 @@ impl FailingCells {
         self.cooperating += has(|f| {
             matches!(
                 f,
-                Finding::NotHeld { .. } | Finding::OffPath { .. } | Finding::Touched { .. } | Finding::TooFast { .. }
+                Finding::NotHeld { .. }
+                    | Finding::OffPath { .. }
+                    | Finding::WrongView { .. }
+                    | Finding::Touched { .. }
+                    | Finding::TooFast { .. }
             )
         });
         self.tilted += has(|f| matches!(f, Finding::Tilted { .. }));
@@ -250,6 +254,10 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
         }
         Finding::OffEntry { robot: r, t_s, off_m } => {
             format!("the shaft of robot {} was {off_m:.9} m off its point of entry at {t_s:.4} s", robot(r))
+        }
+        Finding::WrongView { t_s, share, recorded } => {
+            let recorded = recorded.map_or_else(|| "nothing".to_owned(), |v| format!("{v:.3}"));
+            format!("hidden from the camera wrongly at {t_s:.3} s: {share:.3}, recorded {recorded}")
         }
         Finding::NotHeld { robot: r, t_s, by_m } => {
             format!("the work-piece moved by {by_m:.9} m in the hand of robot {} at {t_s:.4} s", robot(r))

@@ -18,6 +18,7 @@
 //! | get a contact point, its triangle and normals | [`contact::contact_point`] |
 //! | project a point onto a surface, get the signed distance | [`project_point`] |
 //! | cast a ray: the first point of a surface on it | [`ray_cast`] |
+//! | test whether a line of sight is free | [`intersects_segment`] |
 //! | detect collisions of moving shapes (continuous collision detection, time of impact) | [`ccd::time_of_impact`] |
 //! | bound the time to collision | [`ccd::time_to_collision`] |
 //! | cull faces by motion | [`motion_culling::FaceCulling`] |
@@ -86,7 +87,7 @@ mod witness_patch;
 pub use mesh_mesh::{QueryStats, WarmStart, Workspace};
 pub use penetration::{Penetration, penetration};
 pub use point_projection::{PointProjection, project_point};
-pub use ray_cast::{RayHit, ray_cast};
+pub use ray_cast::{RayHit, intersects_segment, ray_cast};
 pub use separation::{DistanceSettings, Separation, WitnessPoints, collides, separation, separation_within, within};
 pub use shape::{
     Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, HullError, MeshError, MeshReport, Shape, ShapeError, ShapeKind,

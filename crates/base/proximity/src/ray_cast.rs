@@ -51,6 +51,33 @@ pub fn ray_cast(shape: &Shape, shape_in_world: &Pose, origin: Vec3, direction: V
     })
 }
 
+/// Whether the straight line between two points meets a solid: its surface, or its inside.
+///
+/// It stops at the first triangle that is met, so it is faster than [`ray_cast`] for a line of sight. An open mesh has no
+/// inside. Input that is not finite counts as met: what is unknown is not free.
+///
+/// ```
+/// use elbowroom_proximity::{Cylinder, Shape, intersects_segment};
+/// use elbowroom_spatial::{Pose, Vec3};
+/// let column = Shape::Cylinder(Cylinder { half_length: 0.6, radius: 0.15 });
+/// let meets = |from: Vec3, to: Vec3| intersects_segment(&column, &Pose::IDENTITY, from, to);
+/// assert!(meets(-Vec3::X, Vec3::X) && meets(Vec3::ZERO, Vec3::Z * 0.1));
+/// assert!(!meets(-Vec3::X, -Vec3::X * 0.2) && !meets(Vec3::Y - Vec3::X, Vec3::Y + Vec3::X));
+/// ```
+pub fn intersects_segment(shape: &Shape, shape_in_world: &Pose, from: Vec3, to: Vec3) -> bool {
+    if !(from.is_finite() && to.is_finite() && shape.is_usable(shape_in_world)) {
+        return true;
+    }
+    let local = shape_in_world.inverse_transform_point(from);
+    let length_m = from.distance(to);
+    // A point is a line of no length, in any direction.
+    let along = (to - from).try_normalize().map_or(Vec3::Z, |along| shape_in_world.inverse_transform_vector(along));
+    match shape {
+        Shape::Mesh(mesh) => meets_triangle(mesh, local, along, length_m) || mesh.contains(local),
+        _ => inside(shape, local, along).is_some_and(|s| s.enter.at <= length_m && s.leave.at >= 0.0),
+    }
+}
+
 /// An end of the part of a ray inside a convex solid: its distance along the ray, and the outward normal there.
 #[derive(Clone, Copy)]
 struct End {
@@ -160,14 +187,33 @@ const BAND: f64 = 1e-12;
 /// Least component of the direction with which the tree is searched: its boxes are inflated by more than this changes.
 const LEAST_COMPONENT: f64 = 1e-9;
 
-/// The first triangle of a mesh on a ray, in the frame of the mesh.
-fn mesh_hit(mesh: &TriMesh, from: Vec3, along: Vec3) -> Option<RayHit> {
+/// The search of the tree of a mesh along a ray, and the distance at which the ray enters the box of the mesh; `None` if
+/// it misses the box.
+fn searched(mesh: &TriMesh, from: Vec3, along: Vec3) -> Option<(Ray, f64)> {
     // The tree is searched in single precision, from a point of the box.
     let entered = box_entry(mesh.aabb(), from, along)?;
-    let searched =
+    let direction =
         Vec3::from(along.to_array().map(|x| if x.abs() < LEAST_COMPONENT { LEAST_COMPONENT.copysign(x) } else { x }));
+    Some((Ray::new(&mesh.bvh, from + along * entered, direction), entered))
+}
+
+/// Whether a triangle of a mesh is on the first `length_m` of a ray, in the frame of the mesh.
+fn meets_triangle(mesh: &TriMesh, from: Vec3, along: Vec3, length_m: f64) -> bool {
+    let Some((ray, _)) = searched(mesh, from, along).filter(|(_, entered)| *entered <= length_m) else { return false };
+    let mut is_met = false;
+    mesh.bvh.traverse(&ray, 0.0, &mut |triangle| {
+        is_met = is_met || triangle_hit(mesh, triangle, from, along).is_some_and(|hit| hit.distance_m <= length_m);
+        // Nothing more is visited after the first one.
+        if is_met { f32::NEG_INFINITY } else { 0.0 }
+    });
+    is_met
+}
+
+/// The first triangle of a mesh on a ray, in the frame of the mesh.
+fn mesh_hit(mesh: &TriMesh, from: Vec3, along: Vec3) -> Option<RayHit> {
+    let (ray, _) = searched(mesh, from, along)?;
     let mut first: Option<RayHit> = None;
-    mesh.bvh.traverse(&Ray::new(&mesh.bvh, from + along * entered, searched), 0.0, &mut |triangle| {
+    mesh.bvh.traverse(&ray, 0.0, &mut |triangle| {
         let found = triangle_hit(mesh, triangle, from, along);
         let is_first = |hit: &RayHit| {
             // Of two triangles at an edge, the one of the lower number, whatever the order of the tree.

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use crate::common::{CONVEX, RandomGeometry, SplitMix, cases, lump};
-use elbowroom_proximity::{Cuboid, Shape, TriMesh, project_point, ray_cast, tessellate::tessellate};
+use elbowroom_proximity::{
+    Cuboid, Shape, TriMesh, intersects_segment, project_point, ray_cast, tessellate::tessellate,
+};
 use elbowroom_spatial::{Pose, Vec3};
 
 /// Distance at which a ray meets a triangle by the signs of three volumes (Plücker); `Err` if it passes its border so
@@ -168,4 +170,76 @@ fn degenerate_rays_and_meshes_have_an_answer() {
         assert_eq!(ray_cast(&mesh, &Pose::from_translation(Vec3::splat(f64::NAN)), Vec3::ZERO, Vec3::Z), None);
         assert_eq!(ray_cast(&mesh, &Pose::IDENTITY, Vec3::splat(1e300), Vec3::X), None);
     }
+}
+
+#[test]
+fn lines_of_sight_meet_a_mesh_as_a_search_of_all_triangles_says() {
+    let mut rng = SplitMix(74);
+    let meshes = [
+        lump(0.3, 0.01, Vec3::new(1.0, 0.6, 1.4), 0.25),
+        lump(0.05, 0.0005, Vec3::new(1.0, 1.0, 1.0), 0.1),
+        lump(50.0, 2.0, Vec3::new(1.0, 0.1, 1.0), 0.3),
+    ];
+    let mut found = [0; 2];
+    let mut within = 0;
+    for mesh in meshes {
+        let size = mesh.aabb().extent().max_element();
+        let shape = Shape::Mesh(Arc::new(mesh.clone()));
+        for k in 0..cases(1_200) / 2 {
+            let pose = if k % 3 == 0 { Pose::IDENTITY } else { rng.pose(size) };
+            let wide = [1.5, 0.5, 0.05][k % 3] * size;
+            let from = rng.vec(wide);
+            let to = if k % 5 == 0 { from + Vec3::Y * rng.between(-size, size) } else { from + rng.vec(size) };
+            let Some(along) = (to - from).try_normalize() else { continue };
+            let Ok(first) = oracle(&mesh, from, along) else { continue };
+            if first.is_some_and(|at| (at - from.distance(to)).abs() < 1e-9 * size) {
+                continue;
+            }
+            let (crosses, is_inside) = (first.is_some_and(|at| at <= from.distance(to)), mesh.contains(from));
+            let meets = intersects_segment(&shape, &pose, pose.transform_point(from), pose.transform_point(to));
+            assert_eq!(meets, crosses || is_inside, "{from:?} to {to:?}, first triangle at {first:?}");
+            found[usize::from(meets)] += 1;
+            within += usize::from(is_inside && !crosses);
+        }
+    }
+    assert!(found[0] > 100 && found[1] > 300 && within > 20, "{found:?}, {within} inside without a crossing");
+}
+
+#[test]
+fn lines_of_sight_meet_a_convex_solid_if_the_least_signed_distance_along_them_is_not_positive() {
+    let mut rng = SplitMix(75);
+    let mut found = [0; 2];
+    for kind in CONVEX.into_iter().chain(["plane"]) {
+        for k in 0..cases(600) {
+            let (shape, pose, from) = (rng.shape(kind), rng.pose(0.5), rng.vec(1.0));
+            // Every eighth has no length.
+            let to = if k % 8 == 0 { from } else { from + rng.vec(1.0) };
+            // The signed distance from a convex solid is convex along a line.
+            let signed = |t: f64| project_point(&shape, &pose, from.lerp(to, t)).signed_distance;
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..120 {
+                let (u, v) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+                if signed(u) < signed(v) { high = v } else { low = u }
+            }
+            let least = signed(low).min(signed(0.0)).min(signed(1.0));
+            if least.abs() < 1e-7 {
+                continue;
+            }
+            let meets = intersects_segment(&shape, &pose, from, to);
+            assert_eq!(meets, least < 0.0, "{kind}: {from:?} to {to:?}, least distance {least}");
+            found[usize::from(meets)] += 1;
+        }
+    }
+    assert!(found.iter().all(|count| *count > 300), "{found:?}");
+}
+
+#[test]
+fn an_unknown_line_of_sight_is_not_free() {
+    let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::splat(0.1) });
+    let (nan, far) = (Vec3::new(f64::NAN, 0.0, 0.0), Vec3::splat(2.0));
+    let lost = Pose::from_translation(nan);
+    assert!(intersects_segment(&shape, &Pose::IDENTITY, nan, far));
+    assert!(intersects_segment(&shape, &Pose::IDENTITY, far, Vec3::splat(f64::INFINITY)));
+    assert!(intersects_segment(&shape, &lost, far, far + Vec3::X));
+    assert!(!intersects_segment(&shape, &Pose::IDENTITY, far, far));
 }

@@ -110,4 +110,4 @@ pub use sensor::{CellSensor, SensorKind};
 pub use shield_report::ShieldReport;
 pub use tcp_target::TcpTargetError;
 pub use tool::CellTool;
-pub use virtual_robot::{CellVirtualRobot, VirtualRobotMember};
+pub use virtual_robot::{CellVirtualRobot, VirtualRobotMember, WorkPieceView};

@@ -2,6 +2,7 @@
 
 use elbowroom_cooperation::{CooperationSettings, Grasp};
 use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_vision::Visibility;
 
 use crate::OperatorStream;
 
@@ -22,6 +23,17 @@ pub struct CellVirtualRobot {
     pub stream: OperatorStream,
     /// Distances, speeds and times.
     pub settings: CooperationSettings,
+    /// The camera that looks at the work-piece, if one is named.
+    pub view: Option<WorkPieceView>,
+}
+
+/// A camera that looks at a work-piece.
+#[derive(Debug, Clone)]
+pub struct WorkPieceView {
+    /// Name of the camera.
+    pub camera: String,
+    /// What it sees of the work-piece.
+    pub visibility: Visibility,
 }
 
 /// A robot that is a member of a virtual robot.

@@ -37,8 +37,13 @@ impl CellVirtualRobot {
         };
         let grasps = self.members[self.holder].grasps.iter().map(distance).enumerate();
         let nearest = grasps.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index);
-        VirtualRobot::new(scene, state, self.work_piece, members.collect(), (self.holder, nearest), self.settings)
-            .map_err(|e| self.not_started(cell, &e, &tool_in_part))
+        let holder = (self.holder, nearest);
+        let mut robot = VirtualRobot::new(scene, state, self.work_piece, members.collect(), holder, self.settings)
+            .map_err(|e| self.not_started(cell, &e, &tool_in_part))?;
+        if let Some(view) = &self.view {
+            robot.keep_in_view(&view.visibility);
+        }
+        Ok(robot)
     }
 
     /// The tool centre point of the holder in the frame of the work-piece, at the start.

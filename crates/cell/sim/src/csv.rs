@@ -125,15 +125,23 @@ pub fn write_operators(recording: &Recording, mut out: impl Write) -> io::Result
 /// Writes `t_s,name,holder,x_m,y_m,z_m,qx,qy,qz,qw`: one row per tick and virtual robot, by virtual robot. Poses are those of
 /// the work-piece, in the world.
 ///
+/// If a camera looks at a work-piece, a column `hidden` follows: the share of its surface in view that the robots hide, 0 to
+/// 1; empty while nothing is in view.
+///
 /// # Errors
 /// Errors of the writer.
 pub fn write_work_pieces(recording: &Recording, mut out: impl Write) -> io::Result<()> {
-    writeln!(out, "t_s,name,holder,x_m,y_m,z_m,qx,qy,qz,qw")?;
+    let has_camera = recording.virtual_robots.iter().any(|track| track.view.is_some());
+    writeln!(out, "t_s,name,holder,x_m,y_m,z_m,qx,qy,qz,qw{}", if has_camera { ",hidden" } else { "" })?;
     for track in &recording.virtual_robots {
         for s in &track.samples {
             let holder = track.robots.get(s.holder).map_or("", String::as_str);
             let (p, [qx, qy, qz, qw]) = (s.part_in_world.translation, s.part_in_world.rotation.to_quaternion_xyzw());
-            writeln!(out, "{},{},{holder},{},{},{},{qx},{qy},{qz},{qw}", s.t_s, track.name, p.x, p.y, p.z)?;
+            write!(out, "{},{},{holder},{},{},{},{qx},{qy},{qz},{qw}", s.t_s, track.name, p.x, p.y, p.z)?;
+            match s.hidden_share {
+                Some(share) => writeln!(out, ",{share}")?,
+                None => writeln!(out, "{}", if has_camera { "," } else { "" })?,
+            }
         }
     }
     out.flush()

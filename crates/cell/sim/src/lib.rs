@@ -52,10 +52,10 @@ pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, Deadlock, Evasion, EventRow, ForceSample, GoverningPoint,
     GuidanceSample, GuidanceState, GuidanceTrack, HandOverRecord, Hold, HoldReason, ObjectTrack, Outcome, PartKind,
     PathReplan, PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding,
-    RobotTrack, RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, VirtualRobotSample, VirtualRobotTrack,
-    WorkPieceStop,
+    RobotTrack, RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, ViewTrack, VirtualRobotSample,
+    VirtualRobotTrack, WorkPieceStop,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
 pub use starts::check_starts;
 pub use summary::{AvoidanceSummary, PerceptionSummary, RunSummary, SensorSummary};
-pub use virtual_robot_summary::{HandOverSummary, VirtualRobotSummary};
+pub use virtual_robot_summary::{HandOverSummary, ViewSummary, VirtualRobotSummary};

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::recording::{HandOverRecord, VirtualRobotTrack, WorkPieceStop};
+use crate::recording::{HandOverRecord, ViewTrack, VirtualRobotSample, VirtualRobotTrack, WorkPieceStop};
 
 /// Robots that acted as one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,6 +22,22 @@ pub struct VirtualRobotSummary {
     pub least_gap_m: Option<f64>,
     /// Largest distance of the work-piece from the desired path, m.
     pub path_deviation_m: f64,
+    /// What the camera saw of it; omitted if no camera looks at it.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub view: Option<ViewSummary>,
+}
+
+/// What a camera saw of a work-piece.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ViewSummary {
+    /// Name of the camera.
+    pub seen_by: String,
+    /// Time for which the robots hid more of its surface in view than allowed, s.
+    pub hidden_s: f64,
+    /// Largest share of its surface in view that they hid, 0 to 1; null if it was never in view.
+    pub largest_hidden_share: Option<f64>,
+    /// Time for which nothing of it was in view, even without the robots, s.
+    pub out_of_view_s: f64,
 }
 
 /// A hand-over.
@@ -60,6 +76,21 @@ impl VirtualRobotSummary {
             hand_overs: track.hand_overs.iter().map(hand_over).collect(),
             least_gap_m: track.samples.iter().map(|s| s.gap_m).filter(|gap| gap.is_finite()).reduce(f64::min),
             path_deviation_m: deviation,
+            view: track.view.as_ref().map(|view| ViewSummary::new(view, &track.samples, tick_s)),
+        }
+    }
+}
+
+impl ViewSummary {
+    fn new(view: &ViewTrack, samples: &[VirtualRobotSample], tick_s: f64) -> Self {
+        let ticks = |counts: &dyn Fn(Option<f64>) -> bool| {
+            samples.iter().filter(|s| counts(s.hidden_share)).count() as f64 * tick_s
+        };
+        Self {
+            seen_by: view.camera.clone(),
+            hidden_s: ticks(&|share| share.is_some_and(|share| share > view.allowed_share)),
+            largest_hidden_share: samples.iter().filter_map(|s| s.hidden_share).reduce(f64::max),
+            out_of_view_s: ticks(&|share| share.is_none()),
         }
     }
 }

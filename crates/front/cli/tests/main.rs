@@ -42,3 +42,4 @@ mod tasks;
 mod teach;
 mod virtual_robots;
 mod watch;
+mod work_piece_in_view;

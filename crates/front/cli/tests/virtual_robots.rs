@@ -47,7 +47,7 @@ fn a_bar_is_handed_over_in_motion_and_stays_on_its_path() {
     // Per tick the holder changes when the receiver takes the bar, and the bar never jumps.
     let rows = std::fs::read_to_string(dir.path().join("out/work_piece.csv")).unwrap();
     let mut lines = rows.lines();
-    assert_eq!(lines.next(), Some("t_s,name,holder,x_m,y_m,z_m,qx,qy,qz,qw"));
+    assert_eq!(lines.next(), Some("t_s,name,holder,x_m,y_m,z_m,qx,qy,qz,qw,hidden"));
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     let changes = rows.windows(2).filter(|w| w[0][2] != w[1][2]).count();
     assert_eq!(changes, hand_overs.len());
@@ -95,6 +95,10 @@ fn wrong_tables_are_refused_at_their_line() {
         ("approach = 60 }", "approach = [0, 0, 0] }", "length 0"),
         ("approach = 60 }", "aproach = 60 }", "approach"),
         ("approach = 60 }", "approach = 5 }", "nearer to \"bar\" than the gap of 10 mm"),
+        ("seen_by = \"above\"", "seen_by = \"abov\"", "above"),
+        ("seen_by = \"above\"\n", "", "needs the camera"),
+        ("hidden = 30", "hidden = 130", "0 to 100"),
+        ("at = [0, 0, 1020], rpy = [180, 0, 0]", "at = [0, 0, 1020]", "shows \"bar\" at no pose of the stream"),
         ("at = [20, 0, 450]", "at = [40, 0, 450]", "the grasp where the tool is"),
     ];
     for (from, to, expected) in cases {

@@ -1,5 +1,9 @@
 //! How much of random motions two or three arms carry out, and how often they stop, beside one arm alone and hand-overs only
-//! at a limit: `cargo bench -p elbowroom-cooperation --bench carrying -- [MOTIONS] [ARMS] [FIRST] [--real] [--out FOLDER]`.
+//! at a limit: `cargo bench -p elbowroom-cooperation --bench carrying -- [MOTIONS] [ARMS] [FIRST] [--real] [--seen] [--out
+//! FOLDER]`.
+//!
+//! With `--seen`, a camera beside the arms looks at the bar, and the second strategy is foresight without a
+//! preference for an arm that does not hide it.
 //!
 //! FIRST is the number of the first motion. With `--real`, each motion has arms of the data, of similar size, instead of two
 //! RX60B. With a folder, only motions with foresight run, and are written for `benches/python/continuous_check.py`.
@@ -33,6 +37,7 @@ struct Totals {
     hand_overs: usize,
     contacts: usize,
     deviation_m: f64,
+    hidden_s: f64,
     step_us: Vec<f64>,
     seconds: f64,
 }
@@ -45,6 +50,7 @@ impl Totals {
         self.hand_overs += outcome.hand_overs.len();
         self.contacts += outcome.contacts;
         self.deviation_m = self.deviation_m.max(outcome.deviation_m);
+        self.hidden_s += outcome.hidden_s;
         self.step_us.extend(outcome.step_us);
         self.seconds += begin.elapsed().as_secs_f64();
     }
@@ -53,13 +59,14 @@ impl Totals {
         self.step_us.sort_by(f64::total_cmp);
         let step = |share: f64| self.step_us[((self.step_us.len() - 1) as f64 * share) as usize];
         println!(
-            "{name:10} {:.3} {:3} {:7.1} {:4} {} {:.1e}  {} steps, µs median {:.0}, p99 {:.0}, most {:.0}  ({:.0} s)",
+            "{name:12} {:.3} {:3} {:7.1} {:4} {} {:.1e} {:7.1}  {} steps, µs median {:.0}, p99 {:.0}, most {:.0}  ({:.0} s)",
             self.share / motions as f64,
             self.whole,
             self.stopped_s,
             self.hand_overs,
             self.contacts,
             self.deviation_m,
+            self.hidden_s,
             self.step_us.len(),
             step(0.5),
             step(0.99),
@@ -80,12 +87,21 @@ fn main() {
         std::fs::create_dir_all(folder).unwrap();
     }
     let foresight = CooperationSettings::default();
-    let at_limits = CooperationSettings { horizon_s: 0.05, ..foresight };
+    let is_seen = words.iter().any(|word| word == "--seen");
+    let (second, other) = if is_seen {
+        ("indifferent", CooperationSettings { hidden_share: 1.0, ..foresight })
+    } else {
+        ("at limits", CooperationSettings { horizon_s: 0.05, ..foresight })
+    };
     let mut all = [Totals::default(), Totals::default(), Totals::default()];
     let mut covered = 0;
     for index in first..first + motions {
         let mut random = SplitMix(11 + index as u64);
-        let (arms, pair, way) = task(&models, &mut random, count);
+        let (arms, mut pair, way) = task(&models, &mut random, count);
+        if is_seen {
+            let size = pair.size;
+            pair = pair.seen_from(Vec3::new(0.0, -1.5, 0.6) * size, Vec3::new(0.0, 0.0, 0.4) * size);
+        }
         covered += usize::from(one_arm_covers(&pair, &way));
         let begin = Instant::now();
         if let Some(folder) = &folder {
@@ -99,14 +115,14 @@ fn main() {
         println!("{index} {} {:.3} {:?}", names.join(" "), outcome.share, outcome.last_hold);
         all[0].add(outcome, begin);
         let begin = Instant::now();
-        all[1].add(carry(&pair, at_limits, &way), begin);
+        all[1].add(carry(&pair, other, &way), begin);
         let begin = Instant::now();
         all[2].add(carry(&pair.with_one_hand(), foresight, &way), begin);
     }
     println!(
-        "{motions} motions, {count} arms, {covered} could be carried by one of them; share carried, whole motions, stopped s, hand-overs, contacts, largest deviation m"
+        "{motions} motions, {count} arms, {covered} could be carried by one of them; share carried, whole motions, stopped s, hand-overs, contacts, largest deviation m, hidden s"
     );
-    let done = all.into_iter().zip(["foresight", "at limits", "one arm"]).filter(|(totals, _)| totals.seconds > 0.0);
+    let done = all.into_iter().zip(["foresight", second, "one arm"]).filter(|(totals, _)| totals.seconds > 0.0);
     done.for_each(|(totals, name)| totals.print(name, motions));
 }
 

@@ -66,6 +66,11 @@ impl VirtualRobot<'_> {
         self.forecasts[k].seconds(self.carried.path_s)
     }
 
+    /// How long the arm with the grasp of this index could hold without hiding the work-piece from the camera, s.
+    fn in_view_s(&self, k: usize) -> f64 {
+        self.forecasts[k].seconds_in_view(self.carried.path_s)
+    }
+
     /// Time until the receiver of this index holds the work-piece, s; infinite if it cannot.
     fn takes_s(&self, k: usize) -> f64 {
         let (holding, forecast) = (&self.holdings[k], &self.forecasts[k]);
@@ -83,8 +88,11 @@ impl VirtualRobot<'_> {
 
     /// How long the receiver of this index could hold, less how long it takes; the more, the better. Beyond the horizon
     /// every time is the same.
+    ///
+    /// Half of the time for which it would hide the work-piece from the camera does not count.
     fn value_s(&self, k: usize) -> f64 {
-        self.holds_s(k).min(self.settings.horizon_s) - self.takes_s(k)
+        let [holds_s, in_view_s] = [self.holds_s(k), self.in_view_s(k)].map(|s| s.min(self.settings.horizon_s));
+        0.5 * (holds_s + in_view_s) - self.takes_s(k)
     }
 
     /// Whether another arm could take the work-piece and hold it for a while; not if that was hoped for too long already.
@@ -99,7 +107,8 @@ impl VirtualRobot<'_> {
         is_under_way || self.decision.no_retreat_s < PATIENCE_S && (0..self.holdings.len()).any(is_usable)
     }
 
-    /// Chooses the grasp for which each free arm waits: where a hand-over would be quickest and last longest.
+    /// Chooses the grasp for which each free arm waits: where a hand-over would be quickest and last longest. No arm waits
+    /// where it hides the work-piece from the camera.
     pub(crate) fn choose_waiting(&mut self) {
         for member in 0..self.members.len() {
             let of_hand_over = self.hand_over.as_ref().map(|h| h.receiver);
@@ -108,10 +117,11 @@ impl VirtualRobot<'_> {
                 self.limbs[member].waits_for = Some(k);
                 continue;
             }
-            let own = |k: &usize| self.holdings[*k].member == member && self.forecasts[*k].grasped.is_some();
+            let is_possible = |k: &usize| self.forecasts[*k].grasped.is_some() && !self.forecasts[*k].hides_before;
+            let own = |k: &usize| self.holdings[*k].member == member && is_possible(k);
             let by_value = |a: &usize, b: &usize| self.value_s(*a).total_cmp(&self.value_s(*b));
             let best = (0..self.holdings.len()).filter(own).max_by(by_value);
-            let present = self.limbs[member].waits_for.filter(|k| self.forecasts[*k].grasped.is_some());
+            let present = self.limbs[member].waits_for.filter(is_possible);
             self.limbs[member].waits_for = match (best, present) {
                 (Some(best), Some(now)) if self.value_s(best) < self.value_s(now) + BETTER_S => Some(now),
                 (best, _) => best,
@@ -119,8 +129,8 @@ impl VirtualRobot<'_> {
         }
     }
 
-    /// Begins a hand-over if the holder will fail before a later one could be complete, to an arm that its override lets
-    /// move.
+    /// Begins a hand-over if the holder will fail before a later one could be complete, or would hide the work-piece from the
+    /// camera, to an arm that its override lets move.
     pub(crate) fn decide(&mut self, dt_s: f64, overrides: &[f64]) {
         self.decision.since_s += dt_s;
         let waits = self.carried.rate == 0.0 && self.carried.ahead.limit == Some(HoldLimit::Retreat);
@@ -132,13 +142,37 @@ impl VirtualRobot<'_> {
         if self.hand_over.is_some() || is_early || !self.carried.wants_to_move() {
             return;
         }
+        // First to an arm that keeps the work-piece in view; if there is none, to one that can hold it.
+        let wanted = [true, false].into_iter().find_map(|in_view| self.receiver(in_view, overrides));
+        let Some((receiver, reason)) = wanted else { return };
         let giver = self.carried.holder;
-        let stopped = self.carried.ahead.limit;
-        let Some(held) = self.forecasts[giver].result else { return };
-        let (giver_holds_s, limit) = match stopped {
+        let (holding, part_in_world) = (&mut self.holdings[giver], self.carried.pose());
+        if !holding.can_retreat(&part_in_world, &self.arms[holding.member].state.q) {
+            return;
+        }
+        self.decision.reason = Some(reason);
+        let joints = self.members[self.holdings[receiver].member].limits.len();
+        self.hand_over = Some(HandOver::new(giver, receiver, &self.holdings, joints));
+    }
+
+    /// How long the holder can hold, or keep the work-piece in view too, and what ends that, s.
+    fn giver_holds_s(&self, in_view: bool) -> Option<(f64, Option<HoldLimit>)> {
+        let giver = self.carried.holder;
+        let held = self.forecasts[giver].result?;
+        let (holds_s, limit) = match self.carried.ahead.limit {
             Some(limit) => (self.carried.ahead.free_to_s - self.carried.path_s, Some(limit)),
             None => (self.holds_s(giver), held.limit),
         };
+        let in_view_s = self.in_view_s(giver);
+        Some(if in_view && in_view_s < holds_s { (in_view_s, Some(HoldLimit::Hidden)) } else { (holds_s, limit) })
+    }
+
+    /// The arm that should take the work-piece now, and why; `None` if the holder should keep it. With `in_view`, an arm that
+    /// hides the work-piece from the camera counts as one that cannot hold it.
+    fn receiver(&self, in_view: bool, overrides: &[f64]) -> Option<(usize, HandOverReason)> {
+        let giver = self.carried.holder;
+        let (giver_holds_s, limit) = self.giver_holds_s(in_view)?;
+        let holds_s = |k: usize| if in_view { self.in_view_s(k) } else { self.holds_s(k) };
         // An arm that stands at its limit gives the work-piece to whoever gets any further.
         let gain_s =
             if self.carried.rate == 0.0 { self.settings.gain_s.min(STOPPED_GAIN_S) } else { self.settings.gain_s };
@@ -146,26 +180,20 @@ impl VirtualRobot<'_> {
         let leaving_s = self.settings.settle_s + self.holdings[giver].grasp.length_m() / self.settings.approach_m_s;
         let is_useful = |k: &usize| {
             let takes_s = self.takes_s(*k);
+            // A hand-over hides the work-piece too: the view must gain from it.
+            let is_worth_it =
+                limit != Some(HoldLimit::Hidden) || holds_s(*k) >= takes_s + leaving_s + self.settings.gain_s;
             self.holdings[*k].member != self.holdings[giver].member
                 && usable(overrides[self.holdings[*k].member]) >= LEAST_RATE
                 && self.decision.refused_s[*k] == 0.0
                 && takes_s.is_finite()
                 && giver_holds_s < (1.0 + self.settings.reserve) * takes_s + leaving_s
-                && self.holds_s(*k) >= giver_holds_s + gain_s
+                && holds_s(*k) >= giver_holds_s + gain_s
+                && is_worth_it
         };
         let by_value = |a: &usize, b: &usize| self.value_s(*a).total_cmp(&self.value_s(*b));
-        let Some(receiver) = (0..self.holdings.len()).filter(is_useful).max_by(by_value) else { return };
-        let (holding, part_in_world) = (&mut self.holdings[giver], self.carried.pose());
-        if !holding.can_retreat(&part_in_world, &self.arms[holding.member].state.q) {
-            return;
-        }
-        self.decision.reason = Some(HandOverReason {
-            limit,
-            giver_holds_s,
-            receiver_holds_s: self.holds_s(receiver),
-            takes_s: self.takes_s(receiver),
-        });
-        let joints = self.members[self.holdings[receiver].member].limits.len();
-        self.hand_over = Some(HandOver::new(giver, receiver, &self.holdings, joints));
+        let receiver = (0..self.holdings.len()).filter(is_useful).max_by(by_value)?;
+        let (receiver_holds_s, takes_s) = (holds_s(receiver), self.takes_s(receiver));
+        Some((receiver, HandOverReason { limit, giver_holds_s, receiver_holds_s, takes_s }))
     }
 }

@@ -20,7 +20,10 @@ pub(crate) struct HoldTime {
     /// Path time (s) from which the arm could not hold the work-piece any longer; infinite beyond the horizon, and minus
     /// infinity if it cannot hold it at all.
     pub to_s: f64,
-    /// Why.
+    /// Path time (s) from which the arm would hide the work-piece from the camera; infinite beyond the horizon, and without
+    /// a camera.
+    pub hidden_from_s: f64,
+    /// Why it could not hold it.
     pub limit: Option<HoldLimit>,
 }
 
@@ -43,6 +46,8 @@ pub(crate) struct Forecast {
     pub grasped: Option<Vec<f64>>,
     /// The configuration at the pre-grasp from there.
     pub pre_grasp: Vec<f64>,
+    /// Whether the arm hides the work-piece from the camera at the pre-grasp already.
+    pub hides_before: bool,
     /// The last result; `None` before the first.
     pub result: Option<HoldTime>,
     /// Of an arm that holds: the foreseen configurations of the last whole forecast, and of the present one.
@@ -53,6 +58,8 @@ pub(crate) struct Forecast {
     /// Path time at which this forecast began, s, and the number of configurations so far.
     from_s: f64,
     done: usize,
+    /// Path time from which this forecast hides the work-piece, s; infinite if it does not so far.
+    hidden_from_s: f64,
     /// Forecasts until the next search for another branch.
     pause: usize,
 }
@@ -62,7 +69,19 @@ impl Forecast {
     pub fn new(joints: usize) -> Self {
         let (q, pre_grasp) = (vec![0.0; joints], vec![0.0; joints]);
         let [trace, next_trace] = [0, 1].map(|_| Trace::new(joints, SAMPLES + 1));
-        Self { grasped: None, pre_grasp, result: None, trace, next_trace, q, from_s: 0.0, done: 0, pause: 0 }
+        Self {
+            grasped: None,
+            pre_grasp,
+            hides_before: false,
+            result: None,
+            trace,
+            next_trace,
+            q,
+            from_s: 0.0,
+            done: 0,
+            hidden_from_s: f64::INFINITY,
+            pause: 0,
+        }
     }
 
     /// Begins anew.
@@ -75,6 +94,11 @@ impl Forecast {
     /// Time until the arm could not hold the work-piece any longer, which is at `path_s` now, s; 0 if unknown.
     pub fn seconds(&self, path_s: f64) -> f64 {
         self.result.map_or(0.0, |result| (result.to_s - path_s).max(0.0))
+    }
+
+    /// Time until the arm could not hold the work-piece any longer, or would hide it from the camera, s; 0 if unknown.
+    pub fn seconds_in_view(&self, path_s: f64) -> f64 {
+        self.result.map_or(0.0, |result| (result.to_s.min(result.hidden_from_s) - path_s).max(0.0))
     }
 
     /// Whether the next piece is the first of a forecast.
@@ -97,10 +121,12 @@ impl Forecast {
                 None => self.begin_held(holding, path, q),
                 Some(giver) => self.begin(holding, &path.at(path_s), (q, giver), margins),
             };
+            self.hidden_from_s = f64::INFINITY;
             if !is_possible {
-                self.result = Some(HoldTime { to_s: f64::NEG_INFINITY, limit: Some(HoldLimit::Reach) });
+                self.result = Some(self.ends(f64::NEG_INFINITY, Some(HoldLimit::Reach)));
                 return;
             }
+            self.see(holding, &path.at(path_s), path_s, margins);
             self.done = 1;
             return;
         }
@@ -109,11 +135,27 @@ impl Forecast {
         let followed = holding.follow(&path.foreseen(self.from_s + ahead_s), step_s, &mut self.q, margins);
         let both_s = SPARE_S + 2.0 * (settings.settle_s + holding.grasp.length_m() / settings.approach_m_s);
         match followed.and_then(|()| self.meets_giver(holding, path, (giver, ahead_s, both_s), margins)) {
-            Ok(()) if self.done < SAMPLES => self.done += 1,
-            Ok(()) => self.conclude(HoldTime { to_s: f64::INFINITY, limit: None }),
-            Err(limit) => {
-                self.conclude(HoldTime { to_s: self.from_s + ahead_s - step_s, limit: Some(limit) });
+            Ok(()) => {
+                let before_s = self.from_s + ahead_s - step_s;
+                self.see(holding, &path.foreseen(self.from_s + ahead_s), before_s, margins);
+                if self.done < SAMPLES {
+                    self.done += 1;
+                } else {
+                    self.conclude(self.ends(f64::INFINITY, None));
+                }
             }
+            Err(limit) => self.conclude(self.ends(self.from_s + ahead_s - step_s, Some(limit))),
+        }
+    }
+
+    fn ends(&self, to_s: f64, limit: Option<HoldLimit>) -> HoldTime {
+        HoldTime { to_s, hidden_from_s: self.hidden_from_s, limit }
+    }
+
+    /// Notes the first place at which the arm hides the work-piece, and the path time before it (s).
+    fn see(&mut self, holding: &mut Holding<'_>, part_in_world: &Pose, before_s: f64, margins: &Margins) {
+        if self.hidden_from_s.is_infinite() && holding.hides(part_in_world, &self.q, margins.hidden_share) {
+            self.hidden_from_s = before_s;
         }
     }
 
@@ -187,6 +229,7 @@ impl Forecast {
         if holding.solve(part_in_world, &grasp.at(grasp.length_m()), &mut self.pre_grasp)
             && holding.clears(&self.q, giver.robot, giver.q, 0.5 * margins.gap_m)
         {
+            self.hides_before = holding.hides(part_in_world, &self.pre_grasp, margins.hidden_share);
             return true;
         }
         self.grasped = None;

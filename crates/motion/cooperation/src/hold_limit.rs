@@ -17,6 +17,8 @@ pub enum HoldLimit {
     Retreat,
     /// There is no room beside the arm that holds the work-piece.
     OtherArm,
+    /// It would hide more of the work-piece from the camera than it may. The motion is not stopped for this.
+    Hidden,
     /// Two parts would be too near to each other.
     Contact(GeometryId, GeometryId),
 }

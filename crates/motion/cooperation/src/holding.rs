@@ -2,10 +2,12 @@
 
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_kinematics::{ChainState, JointLimits};
+use elbowroom_proximity::Shape;
 use elbowroom_robot::{GeometryId, ObjectId, RobotId};
 use elbowroom_scene::{Attachment, Checker, CheckerOptions, Scene, SceneError, SceneState, Selection};
 use elbowroom_spatial::linalg::symmetric_eigen;
 use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_vision::Visibility;
 
 use crate::{CooperationSettings, Grasp, HoldLimit, Member};
 
@@ -25,6 +27,8 @@ pub(crate) struct Margins {
     pub gap_m: f64,
     /// Whether the hand must be able to move back to its pre-grasp.
     pub retreat: bool,
+    /// Share of the work-piece that it may hide from a camera; nothing ends for more, but another arm is preferred.
+    pub hidden_share: f64,
 }
 
 impl Margins {
@@ -36,13 +40,21 @@ impl Margins {
             joint: settings.joint_margin,
             gap_m: settings.gap_m,
             retreat: true,
+            hidden_share: settings.hidden_share,
         }
     }
 
     /// The margins of a motion that is about to be executed. It may need more than the speed of a joint: the work-piece then
     /// slows down. An arm that would have to be this much faster jumps to another branch.
     pub fn executed(settings: &CooperationSettings, retreat: bool) -> Self {
-        Self { speed_share: 20.0, singular_value: 0.0, joint: 0.0, gap_m: 0.5 * settings.gap_m, retreat }
+        Self {
+            speed_share: 20.0,
+            singular_value: 0.0,
+            joint: 0.0,
+            gap_m: 0.5 * settings.gap_m,
+            retreat,
+            hidden_share: settings.hidden_share,
+        }
     }
 }
 
@@ -71,6 +83,8 @@ pub(crate) struct Holding<'s> {
     pub effort: f64,
     /// Robots that are not members.
     bystanders: Vec<RobotId>,
+    /// The work-piece before the camera, if there is one.
+    pub visibility: Option<Visibility>,
 }
 
 impl<'s> Holding<'s> {
@@ -105,6 +119,7 @@ impl<'s> Holding<'s> {
             from: vec![0.0; chain.dof()],
             effort: 0.0,
             bystanders: (0..scene.robots().len()).map(RobotId).filter(|r| !members.contains(r)).collect(),
+            visibility: None,
         })
     }
 
@@ -267,12 +282,30 @@ impl<'s> Holding<'s> {
         if self.clearance_m(q, margins.gap_m).is_infinite() { Ok(()) } else { Err(HoldLimit::Contact(pair.a, pair.b)) }
     }
 
-    /// The nearest free configuration that holds the work-piece there, on any branch, and can let it go.
+    /// Whether the arm at `q` hides more than a share of the work-piece from the camera.
+    pub fn hides(&mut self, part_in_world: &Pose, q: &[f64], share: f64) -> bool {
+        let Self { scene, state, arm, visibility: Some(visibility), .. } = self else { return false };
+        // An unknown place hides it.
+        state.set_q(scene, arm.robot, q).is_err()
+            || visibility.hides_more_than(share, part_in_world, parts(scene, state, arm.robot))
+    }
+
+    /// The nearest free configuration that holds the work-piece there, on any branch, and can let it go; if possible, one
+    /// that does not hide it.
     pub fn search(&mut self, part_in_world: &Pose, seed: &[f64], margins: &Margins) -> Option<Vec<f64>> {
         let base = self.scene.robots()[self.arm.robot.0].base_in_world;
         let tool_in_root = base.inverse_mul(part_in_world) * self.grasp.tool_in_part;
-        let all = self.solver.solve_all(&tool_in_root, seed);
-        all.into_iter().find(|q| self.can_retreat(part_in_world, q) && self.is_free(q, margins).is_ok())
+        let mut nearest = None;
+        for q in self.solver.solve_all(&tool_in_root, seed) {
+            if !self.can_retreat(part_in_world, &q) || self.is_free(&q, margins).is_err() {
+                continue;
+            }
+            if !self.hides(part_in_world, &q, margins.hidden_share) {
+                return Some(q);
+            }
+            nearest = nearest.or(Some(q));
+        }
+        nearest
     }
 
     /// Whether the arm at `q` keeps a distance (m) from another member, whose hand may hold the same work-piece.
@@ -312,6 +345,19 @@ impl<'s> Holding<'s> {
         let (values, _) = symmetric_eigen(square);
         values.into_iter().fold(f64::INFINITY, f64::min).max(0.0).sqrt()
     }
+}
+
+/// The solids of a robot, and where they are.
+pub(crate) fn parts<'a>(
+    scene: &'a Scene,
+    state: &'a SceneState,
+    robot: RobotId,
+) -> impl Iterator<Item = (&'a Shape, Pose)> {
+    let links = scene.robots()[robot.0].robot.links_with_colliders();
+    links.map(move |link| GeometryId::Link { robot, link }).flat_map(move |id| {
+        let in_world = state.pose(scene, id).unwrap_or(Pose::IDENTITY);
+        scene.shapes(id).map(move |(shape, in_link)| (shape, in_world * in_link))
+    })
 }
 
 /// How an arm holds the work-piece with its tool at a pose in the frame of the work-piece.

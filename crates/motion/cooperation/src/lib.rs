@@ -79,6 +79,7 @@ mod proceed;
 mod settings;
 mod step;
 mod trace;
+mod view;
 mod virtual_robot;
 
 pub use error::{CooperationError, PoseRefusal};

@@ -29,6 +29,8 @@ pub struct CooperationSettings {
     pub least_singular_value: f64,
     /// Least distance to the limit of a joint in a foreseen configuration, rad or m.
     pub joint_margin: f64,
+    /// Share of the part of the work-piece in view of the camera that an arm may hide.
+    pub hidden_share: f64,
 }
 
 impl Default for CooperationSettings {
@@ -47,6 +49,7 @@ impl Default for CooperationSettings {
             speed_share: 0.8,
             least_singular_value: 0.02,
             joint_margin: 0.02,
+            hidden_share: 0.3,
         }
     }
 }
@@ -65,9 +68,9 @@ impl CooperationSettings {
             self.gain_s,
             self.speed_share,
         ];
-        let not_negative = [self.reserve, self.rest_s, self.least_singular_value, self.joint_margin];
+        let not_negative = [self.reserve, self.rest_s, self.least_singular_value, self.joint_margin, self.hidden_share];
         positive.iter().all(|v| *v > 0.0 && v.is_finite())
             && not_negative.iter().all(|v| *v >= 0.0 && v.is_finite())
-            && self.speed_share <= 1.0
+            && self.speed_share.max(self.hidden_share) <= 1.0
     }
 }

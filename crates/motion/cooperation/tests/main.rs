@@ -2,5 +2,6 @@
 
 mod carrying;
 mod common;
+mod in_view;
 mod refusals;
 mod yielding;

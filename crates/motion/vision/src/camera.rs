@@ -153,6 +153,13 @@ impl Camera {
         self.camera_to_pixel(self.in_world.inverse_transform_point(p_in_world))
     }
 
+    /// Whether a point of the world is in the image, if nothing is in the way.
+    pub fn shows(&self, p_in_world: Vec3) -> bool {
+        let (width, height) = (self.intrinsics.width as f64, self.intrinsics.height as f64);
+        let is_inside = |p: Point2| p.x >= 0.0 && p.y >= 0.0 && p.x <= width && p.y <= height;
+        self.world_to_pixel(p_in_world).is_some_and(is_inside)
+    }
+
     /// Like [`Camera::world_to_pixel`], for a point in the camera's frame.
     pub fn camera_to_pixel(&self, p_in_camera: Vec3) -> Option<Point2> {
         if !(p_in_camera.z > MIN_DEPTH_M) || !p_in_camera.is_finite() {

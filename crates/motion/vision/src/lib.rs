@@ -13,6 +13,7 @@
 //! | templates | a known footprint gives the height; otherwise it is unbounded | [`Template`] |
 //! | obstacle | convex footprint inflated by an uncertainty, from the floor to a height | [`Obstacle`] |
 //! | point clouds | PCD, PLY and depth images, converted to the same obstacles | [`cloud`] |
+//! | visibility | how much of an object's surface a camera sees, and how much of that other parts hide | [`Visibility`] |
 //! | synthetic images | for tests and demonstrations | [`render`] |
 //!
 //! [`CameraTracker`] performs all steps for a camera, [`cloud::CloudTracker`] for a sensor of points. Lengths are in
@@ -117,6 +118,7 @@ mod template;
 mod template_match;
 mod track;
 mod track_settings;
+mod visibility;
 
 pub use calibration::Calibration;
 pub use camera::{Camera, Intrinsics};
@@ -138,3 +140,4 @@ pub use settings::{CameraTrackerSettings, ShadowSettings};
 pub use stopwatch::Stopwatch;
 pub use template::Template;
 pub use track_settings::TrackSettings;
+pub use visibility::Visibility;

@@ -1,12 +1,15 @@
 //! Frames allocate nothing once lists have grown. Runs without the test harness, whose threads also allocate: the
 //! counter counts the whole process.
 
-use elbowroom_spatial::Vec3;
+use std::sync::Arc;
+
+use elbowroom_proximity::{Shape, Sphere, TriMesh, tessellate::tessellate};
+use elbowroom_spatial::{Pose, Vec3};
 use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
 use elbowroom_vision::render::{RenderConditions, RenderedSolid, Renderer};
 use elbowroom_vision::{
     ArmPart, Camera, CameraTracker, CameraTrackerSettings, Channels, Frame, Intrinsics, PixelMask, Point2,
-    ShadowSettings, Template,
+    ShadowSettings, Template, Visibility,
 };
 
 #[global_allocator]
@@ -50,4 +53,22 @@ fn main() {
     }
     assert!(reported > 200, "{reported}");
     assert_eq!(measured, 0);
+    what_a_camera_sees();
+}
+
+/// What parts hide of a solid is found without allocation, from the first time on.
+fn what_a_camera_sees() {
+    let camera = Camera::look_at(Intrinsics::pinhole(160, 120, 1.1), Vec3::Z * 2.0, Vec3::ZERO, Vec3::Y).unwrap();
+    let (vertices, triangles) = tessellate(&Shape::Sphere(Sphere { radius: 0.2 }), 1e-3);
+    let ball = Shape::Mesh(Arc::new(TriMesh::new(vertices, triangles).unwrap()));
+    let mut seen = Visibility::new(camera, &ball);
+    let (mut hidden, counter) = (0, AllocationCounter::start());
+    for k in 0..100 {
+        let part = Pose::from_translation(Vec3::new(-0.5 + 0.01 * f64::from(k), 0.0, 0.5));
+        hidden += usize::from(seen.hidden_share(&Pose::IDENTITY, [(&ball, part)]).unwrap() > 0.3);
+        hidden += usize::from(seen.hides_more_than(0.3, &Pose::IDENTITY, [(&ball, part)]));
+    }
+    let allocations = counter.allocations();
+    assert!((20..180).contains(&hidden), "{hidden}");
+    assert_eq!(allocations, 0);
 }

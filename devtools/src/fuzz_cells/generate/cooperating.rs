@@ -70,6 +70,10 @@ fn try_cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
         ..Default::default()
     };
     guidance.tables.push(grasps(count, [width, length, gap_m], random));
+    if random.percent(50) {
+        _ = writeln!(guidance.virtual_robot, "seen_by = \"eye\"\nhidden = {}", random.whole(2, 80));
+        guidance.tables.push(camera(bar.translation, random));
+    }
     let on_the_way = guidance.rows[random.whole(0, guidance.rows.len() - 1)].at.map(|v| v as f64 * 1e-6);
     spec.objects.push(ObjectSpec {
         name: BAR.into(),
@@ -104,6 +108,22 @@ fn keys(count: usize, gap_m: f64, random: &mut Random) -> String {
     add("settle_ms", 30, 10.0, 600.0);
     add("horizon_s", 20, 0.5, 8.0);
     keys
+}
+
+/// A camera that looks at where the bar is at the start, more or less.
+fn camera(bar: Vec3, random: &mut Random) -> String {
+    let (yaw, height) = (random.between(-PI, PI), random.between(-0.8, 0.95));
+    let away = Vec3::new(yaw.cos(), yaw.sin(), height) * random.scaled(0.5, 3.0);
+    let along = vector(random, 0.1) - away;
+    let rpy = Rotation::from_z(along * (1.0 / along.length())).to_rpy().map(rounded);
+    let at = (bar + away).to_array().map(rounded);
+    let distortion = if random.percent(30) { "distortion = [-0.1, 0.02]\n" } else { "" };
+    format!(
+        "[camera.eye]\nsize = [640, 480]\nfocal_px = {}\n{distortion}pose = {{ at = {}, rpy = {} }}\n",
+        random.between(300.0, 900.0),
+        list(&at),
+        list(&rpy)
+    )
 }
 
 /// Both ends and the sides of the bar; the first robot has the lower end. Every approach is longer than the gap.

@@ -9,6 +9,7 @@ use super::arm::Arm;
 use super::findings::{Finding, Findings, TOLERANCE_M};
 use super::frame::Frame;
 use super::guarded::Guarded;
+use super::in_view;
 use super::solid::OracleSolid;
 
 /// Distances beyond this are not computed, m.
@@ -21,6 +22,7 @@ pub fn check(cell: &Cell, recording: &Recording, arms: &[Arm], findings: &mut Fi
         held(cell, spec, recording, track, arms, findings);
         on_path(cell, spec, track, findings);
         speeds(cell, spec, recording, findings);
+        in_view::check(cell, spec, recording, track, arms, findings);
         for member in &spec.members {
             distances(cell, spec, recording, (member.robot.0, &arms[member.robot.0]), findings);
             if let Some(collision) = recording.robots[member.robot.0].collisions.first() {

@@ -24,6 +24,8 @@ pub enum Finding {
     NotHeld { robot: usize, t_s: f64, by_m: f64 },
     /// The work-piece of a virtual robot left its desired path.
     OffPath { t_s: f64, off_m: f64 },
+    /// The recorded share of a work-piece that is hidden from a camera, or the time for which it is hidden, is wrong.
+    WrongView { t_s: f64, share: f64, recorded: Option<f64> },
     /// A robot of a virtual robot touched something.
     Touched { robot: usize, t_s: f64 },
     /// An axis of a tool that keeps its direction on a planned move left it.

@@ -15,6 +15,7 @@ mod frame;
 mod grids;
 mod guarded;
 mod guided;
+mod in_view;
 mod kept_axes;
 mod mechanisms;
 mod motion;

@@ -88,6 +88,11 @@ impl OracleSolid {
         Self::Pieces(Tree::new(vec![Piece { core: Core::Points(vec![Vec3::ZERO]), radius: 0.0 }]))
     }
 
+    /// A straight line between two points.
+    pub fn segment(a: Vec3, b: Vec3) -> Self {
+        Self::Pieces(Tree::new(vec![Piece { core: Core::Points(vec![a, b]), radius: 0.0 }]))
+    }
+
     /// Largest distance of its points from a point, m; infinite if it is unbounded.
     pub fn reach_from(&self, point: Vec3) -> f64 {
         let Self::Pieces(tree) = self else { return f64::INFINITY };

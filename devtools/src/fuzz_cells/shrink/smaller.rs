@@ -116,7 +116,7 @@ fn shorter_program(list: &mut Candidates<'_>, r: usize, program: &ProgramSpec) {
 }
 
 fn shorter_guidance(list: &mut Candidates<'_>, guidance: &GuidanceSpec) {
-    // The only table of a virtual robot has its grasps.
+    // The tables of a virtual robot have its grasps and its camera.
     let tables = if guidance.virtual_robot.is_empty() { guidance.tables.len() } else { 0 };
     for i in 0..tables {
         list.push(|c| c.guidance.iter_mut().for_each(|g| drop(g.tables.remove(i))));

@@ -12,7 +12,8 @@ type Result<T> = std::result::Result<T, Diagnostic>;
 
 const TEMPLATE: &str = "templates = [{ name = \"crate\", size = [600, 400], height = 320 }]";
 
-pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor> {
+/// Reads a camera; one that `only_views` shows a work-piece and detects no obstacles.
+pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell, only_views: bool) -> Result<CellSensor> {
     t.only(&names(&[LENS, CAMERA, SENSOR]))?;
     let units = cell.units;
     let of_vision = |e: VisionError| refused(t, &e);
@@ -20,10 +21,13 @@ pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor>
         units.pose(&t.need("pose", "pose = { at = [0, 0, 4000], rpy = [180, 0, 0] }   (z looks along the view)")?)?;
     let camera = Camera::new(sensor::intrinsics(t)?, pose).map_err(of_vision)?;
     let settings = settings(t, units)?;
-    // Refuses a view of the horizon, and an area that is not in the picture.
-    CameraTracker::new(camera.clone().into(), settings.clone()).map_err(of_vision)?;
+    if !only_views {
+        // Refuses a view of the horizon, and an area that is not in the picture.
+        CameraTracker::new(camera.clone().into(), settings.clone()).map_err(of_vision)?;
+    }
     let mask_margin_m = t.get("mask_margin").map_or(Ok(0.03), |v| units.not_negative_length(&v))?;
-    sensor::sensor(name, t, cell, "frames", SensorKind::Camera { camera, settings, mask_margin_m })
+    let kind = SensorKind::Camera { camera, settings, mask_margin_m };
+    sensor::sensor(name, t, cell, ("frames", only_views), kind)
 }
 
 /// An error of the camera at the key that is wrong, in the words of the cell file.

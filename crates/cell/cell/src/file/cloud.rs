@@ -43,5 +43,5 @@ pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellSensor>
         Ok((camera, units.positive_length(&lens.need("step", DEPTH)?)?))
     });
     let depth = depth.transpose()?;
-    sensor::sensor(name, t, cell, "clouds", SensorKind::Cloud { settings, depth })
+    sensor::sensor(name, t, cell, ("clouds", false), SensorKind::Cloud { settings, depth })
 }

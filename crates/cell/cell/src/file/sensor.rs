@@ -26,8 +26,15 @@ const LONGEST_SEARCH_S: f64 = 60.0;
 /// Default age at which the last picture is stale, s.
 const STALE_S: f64 = 0.5;
 
-/// A sensor whose files are in the folder of the key `folder_key`.
-pub(super) fn sensor(name: &str, t: &Table<'_>, cell: &Cell, folder_key: &str, kind: SensorKind) -> Result<CellSensor> {
+/// A sensor whose files are in the folder of the key `folder_key`. One that `only_views` a work-piece has no robots unless
+/// they are named.
+pub(super) fn sensor(
+    name: &str,
+    t: &Table<'_>,
+    cell: &Cell,
+    (folder_key, only_views): (&str, bool),
+    kind: SensorKind,
+) -> Result<CellSensor> {
     let seconds = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| v.not_negative());
     let milliseconds = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| v.positive().map(|ms| ms / 1e3));
     let latency_s = t.get("latency_ms").map_or(Ok(LATENCY_S), |v| v.not_negative().map(|ms| ms / 1e3))?;
@@ -40,14 +47,14 @@ pub(super) fn sensor(name: &str, t: &Table<'_>, cell: &Cell, folder_key: &str, k
         name: name.to_owned(),
         line: t.line,
         kind,
-        robot: robot(t, cell)?,
+        robot: if only_views && t.get("robot").is_none() { RobotId(0) } else { robot(t, cell)? },
         prediction_s: seconds("prediction", 0.5)?,
         folder: t.get(folder_key).map(|v| folder(&v, folder_key)).transpose()?,
         joints: t.get("joints").map(|v| super::models::path(&v)).transpose()?,
         latency_s,
         search_s: t.get("search_ms").map_or(Ok(SEARCH_S), |v| search_s(&v))?,
         stale_s,
-        robots: robots(t, cell)?,
+        robots: if only_views && t.get("robots").is_none() { Vec::new() } else { robots(t, cell)? },
     })
 }
 

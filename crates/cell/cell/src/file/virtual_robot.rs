@@ -5,14 +5,15 @@ use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_spatial::Vec3;
+use elbowroom_vision::Visibility;
 
 use super::definitions::robot_id;
 use super::mechanism;
 use super::operator::{refuse_other_motion, stale_s, stream};
 use super::schema::{GRASP, VIRTUAL_ROBOT, names};
 use super::tools::with_exchanged_tools;
-use crate::virtual_robot::{CellVirtualRobot, VirtualRobotMember};
-use crate::{Cell, CellRobot, Units};
+use crate::virtual_robot::{CellVirtualRobot, VirtualRobotMember, WorkPieceView};
+use crate::{Cell, CellRobot, OperatorStream, SensorKind, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -26,6 +27,12 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
         cell.guidance.virtual_robots.push(virtual_robot);
     }
     Ok(())
+}
+
+/// The names of the cameras that look at work-pieces, known or not.
+pub(super) fn cameras<'t>(root: &Table<'t>) -> Result<Vec<&'t str>> {
+    let named = root.named("virtual_robot")?.into_iter().filter_map(|(_, t)| t.get("seen_by"));
+    named.map(|v| v.text()).collect()
 }
 
 fn virtual_robot(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellVirtualRobot> {
@@ -54,15 +61,44 @@ fn virtual_robot(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellVirtualRo
         }
         Ok(VirtualRobotMember { robot: *robot, grasps: of_robot })
     });
+    let members = members.collect::<Result<_>>()?;
+    let stream = stream(t, cell.units, (1.0, stale_s(t, 500.0)?), &[])?.0;
     Ok(CellVirtualRobot {
         name: name.to_owned(),
         line: t.line,
         work_piece,
-        members: members.collect::<Result<_>>()?,
+        members,
         holder,
-        stream: stream(t, cell.units, (1.0, stale_s(t, 500.0)?), &[])?.0,
         settings: settings(t, cell.units)?,
+        view: view(t, cell, work_piece, &stream)?,
+        stream,
     })
+}
+
+/// The camera that looks at the work-piece.
+fn view(t: &Table<'_>, cell: &Cell, work_piece: ObjectId, stream: &OperatorStream) -> Result<Option<WorkPieceView>> {
+    let Some(v) = t.get("seen_by") else {
+        let alone = t.get("hidden").map(|v| v.error("needs the camera from which the work-piece would be hidden"));
+        return alone.map_or(Ok(None), |e| Err(e.hint("seen_by = \"above\"   (a [camera.NAME] of this file)")));
+    };
+    let name = v.text()?;
+    let cameras = cell.sensors.iter().filter_map(|sensor| match &sensor.kind {
+        SensorKind::Camera { camera, .. } => Some((sensor.name.as_str(), camera)),
+        SensorKind::Cloud { .. } => None,
+    });
+    let Some((_, camera)) = cameras.clone().find(|(known, _)| *known == name) else {
+        let what = format!("names the camera \"{name}\", which is not in this cell");
+        return Err(v.error(what).hint(suggest::hint(name, cameras.map(|(known, _)| known))));
+    };
+    let part = &cell.objects[work_piece.0];
+    let mut visibility = Visibility::new(camera.clone(), &part.shape);
+    let mut poses = stream.rows_between(None, f64::INFINITY).filter_map(|(_, pose)| pose);
+    if !visibility.is_in_view(&part.in_world) && !poses.any(|pose| visibility.is_in_view(&pose)) {
+        let what = format!("names the camera \"{name}\", which shows \"{}\" at no pose of the stream", part.name);
+        let hint = format!("a `pose` of [camera.{name}] from which it is in the picture: z looks along the view");
+        return Err(v.error(what).hint(hint));
+    }
+    Ok(Some(WorkPieceView { camera: name.to_owned(), visibility }))
 }
 
 fn settings(t: &Table<'_>, units: Units) -> Result<CooperationSettings> {
@@ -79,6 +115,7 @@ fn settings(t: &Table<'_>, units: Units) -> Result<CooperationSettings> {
         approach_m_s: length("approach_speed", default.approach_m_s)?,
         settle_s: t.get("settle_ms").map_or(Ok(default.settle_s), |v| Ok(1e-3 * v.positive()?))?,
         horizon_s: t.get("horizon_s").map_or(Ok(default.horizon_s), |v| v.positive())?,
+        hidden_share: t.get("hidden").map_or(Ok(default.hidden_share), |v| v.percent())?,
         ..default
     })
 }

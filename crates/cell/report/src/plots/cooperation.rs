@@ -34,17 +34,33 @@ fn curves(track: &VirtualRobotTrack, name: &str, run: usize) -> Figure {
     };
     add("robot that holds", "#1f77b4", "y", &|s| s.holder as f64);
     add("share of the desired speed (%)", "#2ca02c", "y2", &|s| 100.0 * s.rate);
+    if let Some(view) = &track.view {
+        let hidden = |s: &VirtualRobotSample| s.hidden_share.map_or(f64::NAN, |share| 100.0 * share);
+        add(&format!("hidden from camera {} (%)", view.camera), "#9467bd", "y2", &hidden);
+    }
     let gap = |s: &VirtualRobotSample| if s.gap_m.is_finite() { 1e3 * s.gap_m } else { f64::NAN };
     add("least distance between two robots (mm)", "#d62728", "y3", &gap);
     Figure {
         title: format!("Robots that act as one: {name}"),
-        note: "The robot that holds the work-piece, its speed as a share of the desired one, and the least distance between two \
-               of the robots, as far as it is below 100 mm."
-            .into(),
+        note: note(track),
         over_time: true,
         run: Some(run),
         height: 460,
         wide: true,
         drawing: plot.into(),
     }
+}
+
+fn note(track: &VirtualRobotTrack) -> String {
+    let seen = track.view.as_ref().map_or_else(String::new, |view| {
+        let (percent, camera) = (100.0 * view.allowed_share, &view.camera);
+        format!(
+            " Hidden: the part of its surface in view of camera {camera} that the robots hide; a robot that will hide more \
+             than {percent:.0} % hands the work-piece over before."
+        )
+    });
+    format!(
+        "The robot that holds the work-piece, its speed as a share of the desired one, and the least distance between two of \
+         the robots, as far as it is below 100 mm.{seen}"
+    )
 }

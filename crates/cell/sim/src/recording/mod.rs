@@ -22,7 +22,7 @@ pub use region_track::{RecordedRegionKind, RegionPoses, RegionTrack, Span};
 pub use robot_ending::{Deadlock, Outcome, PartKind, RobotEnding, Stop};
 pub use run_event::{EventRow, RunEvent};
 pub use tick_times::TickTimes;
-pub use virtual_robot_track::{HandOverRecord, VirtualRobotSample, VirtualRobotTrack, WorkPieceStop};
+pub use virtual_robot_track::{HandOverRecord, ViewTrack, VirtualRobotSample, VirtualRobotTrack, WorkPieceStop};
 
 /// One run of a cell.
 #[derive(Debug, Clone)]

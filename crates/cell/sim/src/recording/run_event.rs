@@ -55,6 +55,8 @@ pub enum RunEvent {
     Yield,
     /// The work-piece of a virtual robot, which is named in place of the region, stands although it should move.
     Hold,
+    /// The robots begin to hide the work-piece of their virtual robot, which is named in place of the region, from its camera.
+    Hidden,
 }
 
 impl RunEvent {
@@ -81,6 +83,7 @@ impl RunEvent {
             Self::HandOver => "hand_over",
             Self::Yield => "yield",
             Self::Hold => GuidanceState::Held.name(),
+            Self::Hidden => "hidden",
         }
     }
 }

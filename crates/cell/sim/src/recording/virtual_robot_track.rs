@@ -18,6 +18,17 @@ pub struct VirtualRobotTrack {
     pub stops: Vec<WorkPieceStop>,
     /// Share of the desired motion that was carried out, 0 to 1.
     pub carried_share: f64,
+    /// The camera that looks at the work-piece, if there is one.
+    pub view: Option<ViewTrack>,
+}
+
+/// What a camera saw of a work-piece.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ViewTrack {
+    /// Name of the camera.
+    pub camera: String,
+    /// Share of the surface in view from which on the work-piece counts as hidden.
+    pub allowed_share: f64,
 }
 
 /// A tick of a virtual robot.
@@ -38,6 +49,9 @@ pub struct VirtualRobotSample {
     /// Least distance between two of the robots, with the work-piece, m; infinite beyond 0.1 m; what may touch does not
     /// count.
     pub gap_m: f64,
+    /// Share of the surface in view of the camera that the robots hide, 0 to 1; `None` without a camera, or if nothing is in
+    /// view.
+    pub hidden_share: Option<f64>,
 }
 
 /// A hand-over.

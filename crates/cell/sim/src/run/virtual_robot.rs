@@ -8,7 +8,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Attachment, Scene};
 
 use super::guided_robot::place;
-use crate::recording::{HandOverRecord, RunEvent, VirtualRobotSample, VirtualRobotTrack, WorkPieceStop};
+use crate::recording::{HandOverRecord, RunEvent, ViewTrack, VirtualRobotSample, VirtualRobotTrack, WorkPieceStop};
 
 /// Time for which a work-piece stands after the end of its stream until the run may end, s.
 const STUCK_S: f64 = 5.0;
@@ -56,6 +56,7 @@ pub(super) struct CooperatingRobots<'s> {
     left_out: usize,
     stopped_s: f64,
     is_held: bool,
+    is_hidden: bool,
     yields: Vec<bool>,
     is_over: bool,
     track: VirtualRobotTrack,
@@ -72,6 +73,7 @@ impl<'s> CooperatingRobots<'s> {
             left_out: 0,
             stopped_s: 0.0,
             is_held: false,
+            is_hidden: false,
             yields: vec![false; spec.members.len()],
             is_over: false,
             track: VirtualRobotTrack {
@@ -81,6 +83,10 @@ impl<'s> CooperatingRobots<'s> {
                 hand_overs: Vec::new(),
                 stops: Vec::new(),
                 carried_share: 0.0,
+                view: spec
+                    .view
+                    .as_ref()
+                    .map(|view| ViewTrack { camera: view.camera.clone(), allowed_share: spec.settings.hidden_share }),
             },
         })
     }
@@ -130,6 +136,12 @@ impl<'s> CooperatingRobots<'s> {
         }
         self.is_held = is_held;
         self.stopped_s = if is_held { self.stopped_s + tick_s } else { 0.0 };
+        let hidden_share = self.robot.hidden_share();
+        let is_hidden = hidden_share.is_some_and(|share| share > self.spec.settings.hidden_share);
+        if is_hidden && !self.is_hidden {
+            event(members[holder], RunEvent::Hidden);
+        }
+        self.is_hidden = is_hidden;
         let (on_path, left_s) = self.robot.on_path();
         self.is_over = input == OperatorInput::Over && (left_s < 1e-6 || self.stopped_s > STUCK_S);
         self.track.samples.push(VirtualRobotSample {
@@ -140,6 +152,7 @@ impl<'s> CooperatingRobots<'s> {
             rate: step.rate,
             is_stopped: is_held,
             gap_m: self.robot.gap_m(FAR_M),
+            hidden_share,
         });
         Ok(())
     }
@@ -199,7 +212,7 @@ impl<'s> CooperatingRobots<'s> {
 }
 
 /// What an arm comes to.
-fn limit_in_words(cell: &Cell, robot: &CellRobot, limit: &HoldLimit) -> String {
+fn limit_in_words(cell: &Cell, spec: &CellVirtualRobot, robot: &CellRobot, limit: &HoldLimit) -> String {
     let joint = |index: usize| robot.joint_names().get(index).cloned().unwrap_or_default();
     match *limit {
         HoldLimit::Reach => "comes to the end of its reach".to_owned(),
@@ -208,6 +221,10 @@ fn limit_in_words(cell: &Cell, robot: &CellRobot, limit: &HoldLimit) -> String {
         HoldLimit::Singularity => "comes near a singularity".to_owned(),
         HoldLimit::Retreat => "could not let go any more".to_owned(),
         HoldLimit::OtherArm => "has no room beside the other robot".to_owned(),
+        HoldLimit::Hidden => {
+            let camera = spec.view.as_ref().map_or("", |view| view.camera.as_str());
+            format!("would hide {} from camera {camera}", cell.objects[spec.work_piece.0].name)
+        }
         HoldLimit::Contact(a, b) => format!("would bring {} and {} together", cell.part_name(a), cell.part_name(b)),
     }
 }
@@ -218,7 +235,7 @@ fn hold_in_words(cell: &Cell, spec: &CellVirtualRobot, hold: &Hold) -> String {
         Hold::Override => "a monitor has stopped a robot that carries it".to_owned(),
         Hold::Limit(member, limit) => {
             let robot = &cell.robots[spec.members[*member].robot.0];
-            format!("{} {}", robot.name, limit_in_words(cell, robot, limit))
+            format!("{} {}", robot.name, limit_in_words(cell, spec, robot, limit))
         }
         Hold::Paused => "nothing is desired: the operator is not enabled, or the last row is old".to_owned(),
         Hold::InTheWay(member) => format!("{} is in the way", cell.robots[spec.members[*member].robot.0].name),
@@ -232,11 +249,12 @@ fn hold_in_words(cell: &Cell, spec: &CellVirtualRobot, hold: &Hold) -> String {
 fn in_words(cell: &Cell, spec: &CellVirtualRobot, handed_over: &HandedOver) -> String {
     let robot = |member: usize| &cell.robots[spec.members[member].robot.0];
     let (giver, receiver, reason) = (robot(handed_over.from), robot(handed_over.to), &handed_over.reason);
-    let limit = reason.limit.map_or_else(|| "goes on".to_owned(), |limit| limit_in_words(cell, giver, &limit));
+    let limit = reason.limit.map_or_else(|| "goes on".to_owned(), |limit| limit_in_words(cell, spec, giver, &limit));
+    let can = if reason.limit == Some(HoldLimit::Hidden) { "keeps it in view" } else { "can hold" };
     let holds = if reason.receiver_holds_s.is_finite() {
-        format!("can hold {:.1} s", reason.receiver_holds_s)
+        format!("{can} {:.1} s", reason.receiver_holds_s)
     } else {
-        "can hold as long as is foreseen".to_owned()
+        format!("{can} as long as is foreseen")
     };
     format!(
         "{} {limit} in {:.1} s; {} {holds}; hand-over {:.1} s",

@@ -13,6 +13,7 @@ use elbowroom_robot::{Collider, GeometryId, ObjectId, Robot};
 use elbowroom_scene::{Attachment, Checker, CheckerOptions, Object, Scene, SceneState, Selection};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::SplitMix;
+use elbowroom_vision::{Camera, Intrinsics, Visibility};
 
 /// Duration of a step, s.
 pub const DT_S: f64 = 0.004;
@@ -93,14 +94,14 @@ fn reach_m(robot: &Robot, tip: LinkId) -> f64 {
     far.fold(0.0, f64::max)
 }
 
-/// Grasps at both ends of the bar and at its four sides.
-fn grasps(size: f64) -> Vec<Grasp> {
+/// Grasps at both ends of a bar of half this width and length (m), and at its four sides.
+fn grasps(size: f64, [thin_m, bar_m]: [f64; 2]) -> Vec<Grasp> {
     let grasp = |outward: Vec3, distance_m: f64| {
         let rotation = Rotation::from_z(-outward);
         Grasp { tool_in_part: Pose::new(rotation, outward * distance_m), approach: outward * (-0.06 * size) }
     };
-    let ends = [Vec3::Z, -Vec3::Z].map(|z| grasp(z, BAR_M * size));
-    let sides = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y].map(|side| grasp(side, THIN_M * size));
+    let ends = [Vec3::Z, -Vec3::Z].map(|z| grasp(z, bar_m * size));
+    let sides = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y].map(|side| grasp(side, thin_m * size));
     ends.into_iter().chain(sides).collect()
 }
 
@@ -112,6 +113,8 @@ pub struct Pair {
     pub start: Vec<Vec<f64>>,
     /// Size of the bar and of the motions: that of the smallest arm.
     pub size: f64,
+    /// A camera that looks at the bar.
+    pub visibility: Option<Visibility>,
 }
 
 impl Pair {
@@ -128,6 +131,17 @@ impl Pair {
 
     /// These arms; the distance (m) is for an arm of size 1. `None` if they cannot start like this.
     pub fn of(arms: &[&ArmModel], distance_m: f64, block: Option<(Vec3, Vec3)>) -> Option<Self> {
+        Self::with_part(arms, distance_m, block, [THIN_M, BAR_M])
+    }
+
+    /// Two RX60B with a square plate in place of the bar, which they grasp at its faces and edges.
+    pub fn with_plate() -> Self {
+        let arm = ArmModel::rx60b();
+        Self::with_part(&[&arm, &arm], 0.6, None, [0.06, 0.01]).unwrap()
+    }
+
+    /// Like [`Self::of`], with a bar of half this width and length (m), for an arm of size 1.
+    fn with_part(arms: &[&ArmModel], distance_m: f64, block: Option<(Vec3, Vec3)>, part_m: [f64; 2]) -> Option<Self> {
         let size = arms.iter().map(|arm| arm.size).fold(f64::INFINITY, f64::min);
         let mut builder = Scene::builder();
         let mut members = Vec::new();
@@ -142,13 +156,13 @@ impl Pair {
                 tool_in_tip: arm.tool_in_tip(),
                 limits: JointLimits::of_chain(&arm.robot.chain, 0.3, 0.3, 2.0),
                 hand: vec![arm.tip],
-                grasps: grasps(size),
+                grasps: grasps(size, part_m),
             });
         }
         // The first arm holds the bar at its lower end; the bar points away from it.
         let at = Vec3::new((0.62 - distance_m) * arms[0].size, 0.0, 0.45 * arms[0].size);
         let start = Pose::new(Rotation::from_z(Vec3::X), at);
-        let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(THIN_M, THIN_M, BAR_M) * size });
+        let shape = Shape::Cuboid(Cuboid { half_extents: Vec3::new(part_m[0], part_m[0], part_m[1]) * size });
         builder.object(Object { name: "bar".into(), shape, in_world: start });
         if let Some((at, half_extents)) = block {
             let shape = Shape::Cuboid(Cuboid { half_extents });
@@ -161,7 +175,14 @@ impl Pair {
         for arm in &arms[1..] {
             all.push(arm.raised()?);
         }
-        Some(Self { scene, members, start: all, size })
+        Some(Self { scene, members, start: all, size, visibility: None })
+    }
+
+    /// The same cell with a camera there, which looks at a point.
+    pub fn seen_from(mut self, eye: Vec3, target: Vec3) -> Self {
+        let camera = Camera::look_at(Intrinsics::pinhole(640, 480, 1.2), eye, target, Vec3::Y).unwrap();
+        self.visibility = Some(Visibility::new(camera, &self.scene.objects()[0].shape));
+        self
     }
 
     /// The same cell, in which only the first arm can grasp the bar.
@@ -198,7 +219,12 @@ impl Pair {
     }
 
     pub fn robot(&self, settings: CooperationSettings) -> VirtualRobot<'_> {
-        VirtualRobot::new(&self.scene, self.state(), ObjectId(0), self.members.clone(), (0, 1), settings).unwrap()
+        let members = self.members.clone();
+        let mut robot = VirtualRobot::new(&self.scene, self.state(), ObjectId(0), members, (0, 1), settings).unwrap();
+        if let Some(visibility) = &self.visibility {
+            robot.keep_in_view(visibility);
+        }
+        robot
     }
 }
 
@@ -285,7 +311,24 @@ pub struct Outcome {
     pub largest_speed_m_s: f64,
     /// Largest change of the rate from one step to the next.
     pub largest_rate_change: f64,
+    /// Time for which the arms hid more than 30 % of what the camera sees of the bar, s, and for which it saw nothing.
+    pub hidden_s: f64,
+    pub out_of_view_s: f64,
 }
+
+impl Outcome {
+    /// Notes the share of the bar that is hidden in a step.
+    fn see(&mut self, share: Option<f64>) {
+        match share {
+            Some(share) if share > HIDDEN_SHARE => self.hidden_s += DT_S,
+            None => self.out_of_view_s += DT_S,
+            Some(_) => {}
+        }
+    }
+}
+
+/// Share from which on the bar counts as hidden.
+pub const HIDDEN_SHARE: f64 = 0.3;
 
 /// Steps per desired pose.
 pub const PER_ROW: usize = 5;
@@ -349,6 +392,7 @@ pub fn carry_seen(
             state.set_q(&pair.scene, m.robot, robot.q(member)).unwrap();
         }
         outcome.contacts += usize::from(checker.collides(&state).is_some());
+        outcome.see(robot.hidden_share());
         see(t_s + DT_S, &robot);
         let is_over = k > motion.len() * PER_ROW && left_s < 1e-6;
         if is_over || still_s > 15.0 {

@@ -74,6 +74,8 @@ pub(in crate::file) const VIRTUAL_ROBOT: &[Key] = &[
     key("approach_speed", "length per second", "100 mm/s", "speed of a hand on its approach to the grasp and away from it"),
     key("settle_ms", "ms", "300", "time that a hand takes to close or to open"),
     key("horizon_s", "s", "5", "time that the motion is foreseen"),
+    key("seen_by", "name", "none", "the [camera](#cameraname) that looks at the work-piece: a robot that will hide it hands it over before; a lens and a pose are enough"),
+    key("hidden", "percent", "30, with `seen_by`", "a robot hides the work-piece from more than this on: percent of its surface in view"),
     key("stale_ms", "ms, at most 1000", "500", "the work-piece stands if the last row is older"),
 ];
 
