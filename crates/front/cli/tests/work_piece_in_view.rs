@@ -47,8 +47,22 @@ stream = "plate.csv"
 seen_by = "side"
 hidden = PERCENT
 [virtual_robot.pair.grasps]
-one = [{ at = [0, 0, 0.01], rpy = [3.141592653589793, 0, 0], approach = 0.06 }, { at = [0, 0, -0.01], approach = 0.06 }]
-two = [{ at = [0, 0, 0.01], rpy = [3.141592653589793, 0, 0], approach = 0.06 }, { at = [0, 0, -0.01], approach = 0.06 }]
+one = [
+  { at = [0, 0, 0.01], rpy = [3.141592653589793, 0, 0], approach = 0.06 },
+  { at = [0, 0, -0.01], approach = 0.06 },
+  { at = [0.06, 0, 0], rpy = [0, -1.5707963267948966, 0], approach = 0.06 },
+  { at = [-0.06, 0, 0], rpy = [0, 1.5707963267948966, 0], approach = 0.06 },
+  { at = [0, 0.06, 0], rpy = [1.5707963267948966, 0, 0], approach = 0.06 },
+  { at = [0, -0.06, 0], rpy = [1.5707963267948966, 0, 3.141592653589793], approach = 0.06 },
+]
+two = [
+  { at = [0, 0, 0.01], rpy = [3.141592653589793, 0, 0], approach = 0.06 },
+  { at = [0, 0, -0.01], approach = 0.06 },
+  { at = [0.06, 0, 0], rpy = [0, -1.5707963267948966, 0], approach = 0.06 },
+  { at = [-0.06, 0, 0], rpy = [0, 1.5707963267948966, 0], approach = 0.06 },
+  { at = [0, 0.06, 0], rpy = [1.5707963267948966, 0, 0], approach = 0.06 },
+  { at = [0, -0.06, 0], rpy = [1.5707963267948966, 0, 3.141592653589793], approach = 0.06 },
+]
 "#;
 
 /// A turn that brings the hand of `one` between the plate and the camera within 5 s, then a slow motion for 10 s.
@@ -94,7 +108,7 @@ fn a_plate_is_handed_over_before_the_arm_that_holds_it_hides_it() {
     let dir = tempfile::tempdir().unwrap();
     let (pair, shares) = run(dir.path(), 100);
     assert!(pair["hand_overs"].as_array().unwrap().is_empty(), "{pair}");
-    assert!(hidden_s(&shares, 0.3) > 1.0, "{} s: {pair}", hidden_s(&shares, 0.3));
+    assert!(hidden_s(&shares, 0.3) > 8.0, "{} s: {pair}", hidden_s(&shares, 0.3));
     assert_eq!((pair["hidden_s"].as_f64(), pair["out_of_view_s"].as_f64()), (Some(0.0), Some(0.0)), "{pair}");
 
     let (pair, shares) = run(dir.path(), 30);
@@ -102,7 +116,7 @@ fn a_plate_is_handed_over_before_the_arm_that_holds_it_hides_it() {
     let reason = hand_overs[0]["reason"].as_str().unwrap();
     assert!(reason.starts_with("one would hide plate from camera side in "), "{reason}");
     assert!(reason.contains("two keeps it in view"), "{reason}");
-    assert!(hand_overs.len() == 1 && pair["stopped_s"] == 0.0, "{pair}");
+    assert!(hand_overs.len() <= 2 && pair["stopped_s"] == 0.0, "{pair}");
     assert!(pair["carried_share"].as_f64().unwrap() > 0.999_999, "{pair}");
     let told_s = pair["hidden_s"].as_f64().unwrap();
     assert!(told_s < 0.2 && (told_s - hidden_s(&shares, 0.3)).abs() < 1e-9, "{pair}");
