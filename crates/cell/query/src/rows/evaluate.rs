@@ -107,8 +107,7 @@ pub(super) fn evaluate_blocks<R: Send>(
     take: &mut dyn FnMut(&[R]) -> bool,
 ) -> Result<QueryEffort, Diagnostic> {
     let blocks = count.div_ceil(BLOCK);
-    // Asking for the cores takes tens of microseconds, as long as some states.
-    let cores = if blocks < 2 { 1 } else { std::thread::available_parallelism().map_or(1, usize::from).min(blocks) };
+    let cores = cores(blocks);
     let wrong = |e: SceneError| Diagnostic::new(&states.file, None, e);
     let mut done = QueryEffort::default();
     if cores <= 1 {
@@ -160,6 +159,11 @@ pub(super) fn evaluate_blocks<R: Send>(
         }
         Ok(done)
     })
+}
+
+/// Number of threads for some blocks. Asking for the cores takes tens of microseconds, as long as some states.
+fn cores(blocks: usize) -> usize {
+    if blocks < 2 { 1 } else { std::thread::available_parallelism().map_or(1, usize::from).min(blocks) }
 }
 
 /// The touching triangles of a block.
