@@ -271,17 +271,17 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
             "the tool of robot {} was {off_rad:.4} rad off the direction that it keeps within {within_rad} at {t_s:.4} s",
             robot(r)
         ),
-        Finding::WrongCell { robot: r, t_s, number } => {
-            format!("robot {} was not in cell {number} of its grid at {t_s:.4} s", robot(r))
-        }
         of_joints => joints_in_words(of_joints, cell),
     }
 }
 
-/// Formats a finding on the joints of one robot as a sentence.
+/// Formats a finding on the joints of one robot, or on its grid, as a sentence.
 fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
     let robot = |r: &usize| cell.robots[*r].name.as_str();
     match finding {
+        Finding::WrongCell { robot: r, t_s, number } => {
+            format!("robot {} was not in cell {number} of its grid at {t_s:.4} s", robot(r))
+        }
         Finding::Slowed { robot: r, t_s } => format!("mechanism {} was slowed down at {t_s:.4} s", robot(r)),
         Finding::MisreadLimits { robot: r, joint, t_s, stopped } => format!(
             "robot {}: a reading of joint {joint} {} at {t_s:.4} s",
