@@ -22,6 +22,8 @@ mod motion;
 mod mounted;
 mod physics;
 mod place;
+#[cfg(test)]
+mod planted_tests;
 mod presence;
 mod promises;
 pub mod readings;
