@@ -24,10 +24,10 @@ struct Snippet {
     shows: Vec<String>,
 }
 
-/// Runs every marked block of `README.md`, `CONTRIBUTING.md` and `docs/**/*.md`.
+/// Runs every marked block of `README.md`, `CONTRIBUTING.md` and `docs/**/*.md`. They may leave no file in the repository.
 pub fn run(root: &Path) -> Result<(), String> {
     let search_path = search_path(root)?;
-    let mut ran = 0;
+    let (mut ran, before) = (0, untracked(root));
     for path in documents(root)? {
         let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         let name = path.strip_prefix(root).unwrap_or(&path).display().to_string();
@@ -37,8 +37,18 @@ pub fn run(root: &Path) -> Result<(), String> {
             ran += 1;
         }
     }
+    // A file that appears makes every test run again next time: tests may read any file of the repository.
+    if let Some(left) = untracked(root).iter().find(|file| !before.contains(file)) {
+        return Err(format!("a command left `{left}` in the repository\n  write: its output below target/ or my-cell/"));
+    }
     println!("snippets: {ran} blocks do what the documents say");
     Ok(())
+}
+
+/// Files of the folder that git neither has nor ignores; none without git.
+fn untracked(root: &Path) -> Vec<String> {
+    let files = shell::output(root, "git", &["ls-files", "--others", "--exclude-standard"]);
+    files.unwrap_or_default().lines().map(str::to_owned).collect()
 }
 
 impl Snippet {
