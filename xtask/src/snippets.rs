@@ -39,7 +39,9 @@ pub fn run(root: &Path) -> Result<(), String> {
     }
     // A file that appears makes every test run again next time: tests may read any file of the repository.
     if let Some(left) = untracked(root).iter().find(|file| !before.contains(file)) {
-        return Err(format!("a command left `{left}` in the repository\n  write: its output below target/ or my-cell/"));
+        return Err(format!(
+            "a command left `{left}` in the repository\n  write: its output below target/ or my-cell/"
+        ));
     }
     println!("snippets: {ran} blocks do what the documents say");
     Ok(())
