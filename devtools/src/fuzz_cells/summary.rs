@@ -255,13 +255,8 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
         Finding::OffEntry { robot: r, t_s, off_m } => {
             format!("the shaft of robot {} was {off_m:.9} m off its point of entry at {t_s:.4} s", robot(r))
         }
-        Finding::WrongView { t_s, share, recorded } => {
-            let recorded = recorded.map_or_else(|| "nothing".to_owned(), |v| format!("{v:.3}"));
-            format!("hidden from the camera wrongly at {t_s:.3} s: {share:.3}, recorded {recorded}")
-        }
-        Finding::NotHeld { robot: r, t_s, by_m } => {
-            format!("the work-piece moved by {by_m:.9} m in the hand of robot {} at {t_s:.4} s", robot(r))
-        }
+        Finding::WrongView { t_s, share, recorded } => wrong_view(*t_s, *share, *recorded),
+        Finding::NotHeld { robot: r, t_s, by_m } => not_held(robot(r), *t_s, *by_m),
         Finding::OffPath { t_s, off_m } => format!("the work-piece was {off_m:.9} m off its path at {t_s:.4} s"),
         Finding::Touched { robot: r, t_s } => format!("robot {} touched something at {t_s:.4} s", robot(r)),
         Finding::TooFast { robot: r, t_s, share } => {
@@ -294,4 +289,13 @@ fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
         ),
         other => format!("{other:?}"),
     }
+}
+
+fn wrong_view(t_s: f64, share: f64, recorded: Option<f64>) -> String {
+    let recorded = recorded.map_or_else(|| "nothing".to_owned(), |v| format!("{v:.3}"));
+    format!("hidden from the camera wrongly at {t_s:.3} s: {share:.3}, recorded {recorded}")
+}
+
+fn not_held(robot: &str, t_s: f64, by_m: f64) -> String {
+    format!("the work-piece moved by {by_m:.9} m in the hand of robot {robot} at {t_s:.4} s")
 }

@@ -376,7 +376,7 @@ fn a_shaft_that_leaves_its_point_of_entry_or_its_depth_is_found() {
 }
 
 #[test]
-fn a_work_piece_that_is_dropped_or_off_its_path_and_joints_that_are_too_fast_are_found() {
+fn a_work_piece_that_is_dropped_off_its_path_or_seen_wrongly_and_joints_that_are_too_fast_are_found() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut cell = Cell::load(root.join("examples/inspection/cell.toml")).unwrap();
     cell.timing.max_s = 1.0;
@@ -393,6 +393,13 @@ fn a_work_piece_that_is_dropped_or_off_its_path_and_joints_that_are_too_fast_are
     dropped.virtual_robots[0].samples[last].part_in_world.translation.z += 1e-5;
     let list = found(&dropped);
     assert!(matches!(list[..], [Finding::NotHeld { robot: 0, .. }, Finding::OffPath { .. }]), "{list:?}");
+    // A share that is wrong, and one that is missing.
+    for wrong in [Some(0.6), None] {
+        let mut seen = outcome.recording.clone();
+        seen.virtual_robots[0].samples.iter_mut().for_each(|s| s.hidden_share = wrong);
+        let list = found(&seen);
+        assert!(matches!(list[..], [Finding::WrongView { .. }]), "{list:?}");
+    }
     let mut fast = outcome.recording.clone();
     fast.robots[1].samples[last].q[0] += 1.1 * cell.robots[1].limits[0].velocity * fast.tick_s;
     let list = found(&fast);
