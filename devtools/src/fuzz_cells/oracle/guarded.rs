@@ -92,6 +92,11 @@ impl Guarded {
         frames[self.link].then(&self.in_link).at
     }
 
+    /// Whether the straight line between two points comes nearer than `within` (m).
+    pub fn is_crossed(&self, frames: &[Frame], ends: [Vec3; 2], within: f64) -> bool {
+        self.solid.is_crossed(&frames[self.link].then(&self.in_link), ends, within)
+    }
+
     pub fn distance(&self, frames: &[Frame], region: &OracleSolid, region_at: &Frame, limit: f64) -> Bounds {
         self.solid.distance(&frames[self.link].then(&self.in_link), region, region_at, limit)
     }

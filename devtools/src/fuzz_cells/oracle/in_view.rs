@@ -9,7 +9,6 @@ use super::arm::Arm;
 use super::findings::{Finding, Findings};
 use super::frame::Frame;
 use super::guarded::Guarded;
-use super::solid::OracleSolid;
 
 /// Ticks from one comparison to the next.
 const EVERY: usize = 5;
@@ -121,11 +120,10 @@ fn is_in_picture(view: &WorkPieceView, p: Vec3) -> bool {
 /// Whether the line of sight from a point to the camera meets a part of an arm.
 fn is_hidden(eye: Vec3, at: Vec3, frames: &[Frame], solids: &[Guarded]) -> bool {
     let along = eye - at;
-    let line = OracleSolid::segment(at, eye);
     solids.iter().any(|solid| {
         let link = frames[solid.link].at;
         let share = ((link - at).dot(along) / along.length_squared()).clamp(0.0, 1.0);
         let near = link.distance(at + along * share) <= solid.radius_m + HIDDEN_M;
-        near && solid.distance(frames, &line, &Frame::IDENTITY, 1e-3).upper < HIDDEN_M
+        near && solid.is_crossed(frames, [at, eye], HIDDEN_M)
     })
 }

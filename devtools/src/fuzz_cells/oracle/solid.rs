@@ -88,9 +88,16 @@ impl OracleSolid {
         Self::Pieces(Tree::new(vec![Piece { core: Core::Points(vec![Vec3::ZERO]), radius: 0.0 }]))
     }
 
-    /// A straight line between two points.
-    pub fn segment(a: Vec3, b: Vec3) -> Self {
-        Self::Pieces(Tree::new(vec![Piece { core: Core::Points(vec![a, b]), radius: 0.0 }]))
+    /// Whether the straight line between two points comes nearer to its surface, or to a solid piece, than `within` (m).
+    pub fn is_crossed(&self, at: &Frame, ends: [Vec3; 2], within: f64) -> bool {
+        let ends = ends.map(|end| at.vector_back(end - at.at));
+        match self {
+            Self::Pieces(tree) => {
+                let line = Piece { core: Core::Points(ends.to_vec()), radius: 0.0 };
+                tree.is_crossed(0, ends, &line, within)
+            }
+            Self::Below(height) => ends.iter().any(|end| end.z <= *height),
+        }
     }
 
     /// Largest distance of its points from a point, m; infinite if it is unbounded.
@@ -116,6 +123,26 @@ impl OracleSolid {
 }
 
 impl Tree {
+    fn is_crossed(&self, node: usize, ends: [Vec3; 2], line: &Piece, within: f64) -> bool {
+        let n = &self.nodes[node];
+        let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+        for k in 0..3 {
+            let (from, along) = (ends[0][k] - n.center[k], ends[1][k] - ends[0][k]);
+            let half = n.half[k] + within;
+            if along.abs() < 1e-12 {
+                leaves = if from.abs() > half { -1.0 } else { leaves };
+                continue;
+            }
+            let (s, t) = ((-half - from) / along, (half - from) / along);
+            (enters, leaves) = (enters.max(s.min(t)), leaves.min(s.max(t)));
+        }
+        enters <= leaves
+            && match n.below {
+                Below::Nodes(a, b) => self.is_crossed(a, ends, line, within) || self.is_crossed(b, ends, line, within),
+                Below::Piece(i) => gjk(&self.pieces[i], &Frame::IDENTITY, line, &Frame::IDENTITY).upper < within,
+            }
+    }
+
     fn new(pieces: Vec<Piece>) -> Self {
         let boxes: Vec<(Vec3, Vec3)> = pieces.iter().map(Piece::corners).collect();
         let mut tree = Self { nodes: Vec::new(), pieces };
