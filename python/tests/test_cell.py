@@ -37,6 +37,9 @@ def test_a_run_has_the_summary_of_the_command(command: Path) -> None:
     for summary in (run.summary, expected):
         summary.pop("tick_ns", None)
     assert run.summary == expected and not run.has_violation
+    for repeat in (0, -1, 2**32):
+        with pytest.raises(er.ArgumentError, match="`repeat`"):
+            er.Cell.load(path).run(repeat=repeat)
     without = er.Cell.load(path).run(monitor=False)
     assert without.has_violation and without.summary != expected
 

@@ -39,6 +39,20 @@ pub struct QueryRobot {
     pub base_in_world: Pose,
     /// Default joint values, rad or m.
     pub start: Vec<f64>,
+    /// Whether a monitor guards it; false for a mechanism.
+    pub is_guarded: bool,
+}
+
+impl QueryRobot {
+    fn of(robot: &crate::CellRobot) -> Self {
+        Self {
+            name: robot.name.clone(),
+            robot: robot.robot.clone(),
+            base_in_world: robot.base_in_world,
+            start: robot.start.clone(),
+            is_guarded: !robot.is_mechanism(),
+        }
+    }
 }
 
 /// Whether a scene is built with proofs that pairs are out of reach at all joint values.
@@ -64,15 +78,9 @@ impl QueryModel {
 
     /// The model of a cell without its rules of pairs.
     pub fn without_rules(cell: &Cell) -> Self {
-        let robot = |r: &crate::CellRobot| QueryRobot {
-            name: r.name.clone(),
-            robot: r.robot.clone(),
-            base_in_world: r.base_in_world,
-            start: r.start.clone(),
-        };
         Self {
             file: cell.file.clone(),
-            robots: cell.robots.iter().map(robot).collect(),
+            robots: cell.robots.iter().map(QueryRobot::of).collect(),
             objects: cell.objects.clone(),
             carried: Vec::new(),
             rules: PairRules::default(),
@@ -92,7 +100,7 @@ impl QueryModel {
         let placed = |(name, robot, base_in_world): (String, Robot, Pose)| {
             let (lower, upper) = (robot.chain.lower(), robot.chain.upper());
             let start = lower.iter().zip(&upper).map(|(lower, upper)| 0.0_f64.min(*upper).max(*lower)).collect();
-            QueryRobot { name, robot, base_in_world, start }
+            QueryRobot { name, robot, base_in_world, start, is_guarded: true }
         };
         Self {
             file: file.to_owned(),
@@ -106,15 +114,9 @@ impl QueryModel {
 
     /// A single robot of a cell, at its pose. States may contain its name.
     pub fn of_robot_in_cell(cell: &Cell, robot: &crate::CellRobot) -> Self {
-        let only = QueryRobot {
-            name: robot.name.clone(),
-            robot: robot.robot.clone(),
-            base_in_world: robot.base_in_world,
-            start: robot.start.clone(),
-        };
         Self {
             file: cell.file.clone(),
-            robots: vec![only],
+            robots: vec![QueryRobot::of(robot)],
             objects: Vec::new(),
             carried: Vec::new(),
             rules: PairRules::default(),

@@ -37,7 +37,9 @@ pub enum BagError {
         source: Damage,
     },
     /// A message is not of its channel's type.
-    #[error("message {message} on {topic} is not a {what}: {source}")]
+    #[error(
+        "message {message} on {topic} is not a {what}: {source}\n  write: a recording of this version of elbowroom"
+    )]
     Message {
         /// Number of the message in the file, from 0.
         message: u64,

@@ -77,8 +77,9 @@ impl<W: Write + Seek> RunRecorder<W> {
         if now_s >= self.next_status_s {
             let present = tick.present;
             let tcp_in_root = tick.monitor.state().link_in_root(present.flange) * present.tcp_in_flange;
-            let tcp = present.base_in_world * tcp_in_root;
-            let status = RobotStatus::of_tick(now_s, tick.monitor, tick.snapshot, tick.report, Some(&tcp));
+            // A mechanism has none.
+            let tcp = tick.monitor.tcp().map(|_| present.base_in_world * tcp_in_root);
+            let status = RobotStatus::of_tick(now_s, tick.monitor, tick.snapshot, tick.report, tcp.as_ref());
             self.status.robots.push(RobotStatus { sequence: self.tick.sequence, ..status });
         }
         self.writer.tick(&self.tick)

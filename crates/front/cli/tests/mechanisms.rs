@@ -126,3 +126,24 @@ fn commands_that_take_one_robot_take_the_only_robot_and_keep_it_off_the_door() {
         "{refused}"
     );
 }
+
+#[test]
+fn what_needs_a_guarded_robot_or_a_hand_is_refused() {
+    let export = call(CELL, &["region", "export", "cell.toml", "--robot", "door", "--to", "krl"]).expect(2).stderr;
+    assert!(export.contains("\"door\" is a mechanism") && export.contains("write: --robot"), "{export}");
+    let kept = "{ move = \"planned\", to = [60], keep = { axis = \"z\", within = 5 } }";
+    let kept = call(&with_door(0.0, kept), &["check", "cell.toml"]).expect(2).stderr;
+    assert!(kept.contains("cell.toml:") && kept.contains("no tool whose axis could be kept"), "{kept}");
+    let only = CELL.replace("[robot.door]\n", "[robot.door]\nstart = [0]\n");
+    let (begin, end) = (only.find("[robot.arm]").unwrap(), only.find("[robot.door]").unwrap());
+    let alone = [&only[..begin], &only[end..only.find("[region.edge]").unwrap()]].concat();
+    let refused = call(&alone, &["plan", "cell.toml", "--to", "1"]).expect(2).stderr;
+    assert!(refused.contains("has 0 robots") && !refused.contains("write: door"), "{refused}");
+    // A door beyond its limits does not stop by a monitor.
+    let dir = with_cell(&with_door(0.0, ""));
+    std::fs::write(dir.path().join("door.urdf"), DOOR).unwrap();
+    std::fs::write(dir.path().join("q.csv"), "arm.slide,door.hinge\n0,3.5\n2.5,0\n").unwrap();
+    let rows = elbowroom(dir.path(), &["query", "cell.toml", "--ask", "limits", "--states", "q.csv"]).expect(0).stdout;
+    let stops: Vec<&str> = rows.lines().skip(1).filter_map(|line| line.rsplit(',').next()).collect();
+    assert_eq!(stops, ["0", "1"], "{rows}");
+}

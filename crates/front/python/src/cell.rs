@@ -91,7 +91,10 @@ impl Cell {
     /// FileError
     ///     If a program cannot be carried out.
     #[pyo3(signature = (*, monitor=true, avoidance=true, repeat=1))]
-    fn run<'py>(&self, py: Python<'py>, monitor: bool, avoidance: bool, repeat: u32) -> PyResult<Bound<'py, PyAny>> {
+    fn run<'py>(&self, py: Python<'py>, monitor: bool, avoidance: bool, repeat: i64) -> PyResult<Bound<'py, PyAny>> {
+        let repeat = u32::try_from(repeat).ok().filter(|repeat| *repeat > 0).ok_or_else(|| {
+            Fault::Argument(format!("`repeat` is {repeat}\n  write: how often the programs run, 1 or more"))
+        })?;
         let options = RunOptions { apply_override: monitor, avoidance, repeat, ..RunOptions::default() };
         let (summary, outcome) = py.detach(|| run(&self.model, &options))?;
         let summary = py.import("json")?.getattr("loads")?.call1((summary,))?;

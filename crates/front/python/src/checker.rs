@@ -25,7 +25,7 @@ struct Model {
 
 /// Collision, distance and tolerance of the states of a robot or a cell.
 ///
-/// The answers are those of `elbowroom query`, to the bit. All cores work; other threads of Python run meanwhile.
+/// The numbers are those of `elbowroom query`, to the bit. All cores work; other threads of Python run meanwhile.
 ///
 /// Parameters
 /// ----------
@@ -71,7 +71,11 @@ impl Model {
             let prefix = if query.is_single_robot { String::new() } else { format!("{}.", robot.name) };
             joint_names(&robot.robot.chain).into_iter().map(move |joint| format!("{prefix}{joint}"))
         });
-        let columns = columns.collect();
+        let columns: Vec<String> = columns.collect();
+        if columns.is_empty() {
+            let text = "the model has no joint that moves, so it has no states\n  write: a robot with joints";
+            return Err(Fault::Argument(text.into()));
+        }
         Ok(Self { query, scene, start, columns })
     }
 }

@@ -268,7 +268,7 @@ impl Monitor {
     }
 
     fn stop(&mut self, s: &Snapshot, fault: Fault) -> TickReport {
-        if self.faults.input != Some(fault) {
+        if !self.faults.input.is_some_and(|before| before.is_same_as(fault)) {
             let region = match fault {
                 Fault::Source { region } | Fault::SourceJump { region } => Some(region),
                 _ => None,

@@ -245,6 +245,14 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// Whether two faults are one that goes on: of the same kind and place, whatever its numbers are in this tick.
+    pub(crate) fn is_same_as(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::BeyondLimits { joint: a, .. }, Self::BeyondLimits { joint: b, .. }) => a == b,
+            (a, b) => a == b,
+        }
+    }
+
     /// True if the time stamps of the snapshot are valid.
     pub(crate) fn has_valid_time(self) -> bool {
         use Fault::{BeyondLimits, Braking, Frozen, NoVelocity, Source, SourceJump, TooFast};

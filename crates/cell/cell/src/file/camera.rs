@@ -12,9 +12,12 @@ type Result<T> = std::result::Result<T, Diagnostic>;
 
 const TEMPLATE: &str = "templates = [{ name = \"crate\", size = [600, 400], height = 320 }]";
 
-/// Reads a camera; one that `only_views` shows a work-piece and detects no obstacles.
-pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell, only_views: bool) -> Result<CellSensor> {
+/// Reads a camera. One that a virtual robot `views` its work-piece with, and that has nothing but a lens and a pose, detects no
+/// obstacles and need not show the floor; any other key is of a camera that detects them.
+pub(super) fn read(name: &str, t: &Table<'_>, cell: &Cell, views: bool) -> Result<CellSensor> {
     t.only(&names(&[LENS, CAMERA, SENSOR]))?;
+    let detects = |key: &&str| *key != "pose" && t.get(key).is_some();
+    let only_views = views && !names(&[CAMERA, SENSOR]).iter().any(detects);
     let units = cell.units;
     let of_vision = |e: VisionError| refused(t, &e);
     let pose =

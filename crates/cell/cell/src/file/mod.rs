@@ -272,11 +272,8 @@ fn regions(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) ->
 /// Cameras, then sources of point clouds.
 fn sensors(root: &Table<'_>, cell: &Cell) -> Result<Vec<CellSensor>> {
     let viewing = virtual_robot::cameras(root)?;
-    let cameras = root.named("camera")?.into_iter().map(|(name, t)| {
-        // Without pictures it avoids nothing, and need not show the floor.
-        let only_views = viewing.contains(&name) && t.get("frames").is_none();
-        camera::read(name, &t, cell, only_views)
-    });
+    let cameras =
+        root.named("camera")?.into_iter().map(|(name, t)| camera::read(name, &t, cell, viewing.contains(&name)));
     let clouds = root.named("cloud")?.into_iter().map(|(name, t)| cloud::read(name, &t, cell));
     cameras.chain(clouds).collect()
 }

@@ -78,6 +78,10 @@ fn refuse_hand(t: &Table<'_>, word: &'static str, robot: &CellRobot) -> Result<(
         Some(v) if word == "move" && v.text().is_ok_and(|kind| kind == "linear") => {
             mechanism::refuse_step(&v, robot, "has no tool centre point that could move straight")
         }
+        _ if word == "move" => match t.get("keep") {
+            Some(v) => mechanism::refuse_step(&v, robot, "has no tool whose axis could be kept"),
+            None => Ok(()),
+        },
         _ => Ok(()),
     }
 }

@@ -16,7 +16,10 @@ pub fn select_robot<'c>(cell: &'c Cell, name: Option<&str>) -> Result<(RobotId, 
     let Some(name) = name else {
         return match cell.guarded_robots().collect::<Vec<_>>()[..] {
             [only] => Ok((only, &cell.robots[only.0])),
-            ref robots => wrong(format!("has {} robots: name one", robots.len()), suggest::hint("", names())),
+            ref robots => {
+                let guarded = robots.iter().map(|id| cell.robots[id.0].name.as_str());
+                wrong(format!("has {} robots: name one", robots.len()), suggest::hint("", guarded))
+            }
         };
     };
     match cell.robots.iter().position(|r| r.name == name) {

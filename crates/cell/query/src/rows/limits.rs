@@ -121,7 +121,7 @@ fn row(model: &QueryModel, states: &QueryStates, index: usize) -> LimitRow {
             if limits.contains(*value, 0.0) {
                 continue;
             }
-            row.stops |= !limits.is_plausible(*value);
+            row.stops |= model.robots[robot.0].is_guarded && !limits.is_plausible(*value);
             if row.farthest.is_none_or(|farthest| overshoot.abs() > farthest.overshoot.abs()) {
                 row.farthest = Some(JointOvershoot { robot, joint: i, value: *value, overshoot });
             }

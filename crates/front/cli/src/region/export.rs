@@ -41,6 +41,10 @@ pub(super) fn export(args: &ExportArgs) -> Result<ExitStatus, Failure> {
     let cell = Cell::load(&args.cell)?;
     cell.warnings.iter().for_each(|w| note(format_args!("warning: {w}")));
     let (id, robot) = select_robot(&cell, args.robot.as_deref())?;
+    if robot.is_mechanism() {
+        let what = format!("robot \"{}\" is a mechanism: no region applies to it, so it has no zones", robot.name);
+        return Err(Failure::Wrong(format!("{what}\n  write: --robot with the name of a robot that is guarded")));
+    }
     let frame = ZoneFrame::new(&cell, id, args.frame.as_deref())?;
     let language = args.to.into();
     let exported = export_zones(&cell, id, &frame, language);

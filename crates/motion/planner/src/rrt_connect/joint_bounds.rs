@@ -111,8 +111,12 @@ impl JointBounds {
     pub fn narrowed_chain(&self, chain: &Chain) -> Chain {
         let mut joints = chain.joints().to_vec();
         for (i, id) in chain.active_joints().iter().enumerate() {
-            let limits = &mut joints[id.0].limits;
-            (limits.lower, limits.upper) = (self.lower[i], self.upper[i]);
+            let joint = &mut joints[id.0];
+            (joint.limits.lower, joint.limits.upper) = (self.lower[i], self.upper[i]);
+            // A joint that turns for ever has no limits.
+            if joint.kind == JointKind::Continuous && self.lower[i].is_finite() && self.upper[i].is_finite() {
+                joint.kind = JointKind::Revolute;
+            }
         }
         // Contradictory limits, which no configuration satisfies, are not a chain.
         Chain::new(chain.name(), chain.links().to_vec(), joints).unwrap_or_else(|_| chain.clone())
@@ -199,6 +203,24 @@ mod tests {
     use elbowroom_robot::example;
 
     use super::*;
+
+    #[test]
+    fn a_joint_that_turns_for_ever_is_held_in_the_narrowed_chain_too() {
+        let chain = example::arm().unwrap().chain;
+        let mut joints = chain.joints().to_vec();
+        let waist = &mut joints[chain.active_joints()[0].0];
+        waist.kind = JointKind::Continuous;
+        let endless = Chain::new("endless", chain.links().to_vec(), joints).unwrap();
+        assert_eq!(endless.upper()[0], f64::INFINITY);
+        let mut bounds = JointBounds::new(&endless);
+        let free = (f64::NEG_INFINITY, f64::INFINITY);
+        bounds.narrow([(0.3, 0.3), free, free].into_iter());
+        let narrowed = bounds.narrowed_chain(&endless);
+        assert_eq!((narrowed.lower(), narrowed.upper()), (bounds.lower.clone(), bounds.upper.clone()));
+        // One that is not held still turns for ever.
+        let whole = JointBounds::new(&endless).narrowed_chain(&endless);
+        assert_eq!(whole.upper()[0], f64::INFINITY);
+    }
 
     #[test]
     fn a_goal_one_turn_nearer_is_reported_within_the_limits() {
