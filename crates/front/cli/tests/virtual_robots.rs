@@ -98,6 +98,8 @@ fn wrong_tables_are_refused_at_their_line() {
         ("seen_by = \"above\"", "seen_by = \"abov\"", "above"),
         ("seen_by = \"above\"\n", "", "needs the camera"),
         ("hidden = 30", "hidden = 130", "0 to 100"),
+        // Then it detects obstacles too.
+        ("[camera.above]", "[camera.above]\nuncertainty = 0.02", "needs the key `robot`"),
         ("at = [0, 0, 1020], rpy = [180, 0, 0]", "at = [0, 0, 1020]", "shows \"bar\" at no pose of the stream"),
         ("at = [20, 0, 450]", "at = [40, 0, 450]", "the grasp where the tool is"),
     ];
