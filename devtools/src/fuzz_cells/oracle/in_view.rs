@@ -10,10 +10,10 @@ use super::findings::{Finding, Findings};
 use super::frame::Frame;
 use super::guarded::Guarded;
 
-/// Ticks from one comparison to the next.
-const EVERY: usize = 5;
+/// Instants that are compared, spread over the run: each takes as long as many ticks of the run.
+const INSTANTS: usize = 40;
 /// Points on the surface of a box.
-const POINTS: f64 = 500.0;
+const POINTS: f64 = 300.0;
 /// A line of sight that is nearer to a part than this is hidden, m.
 const HIDDEN_M: f64 = 1e-7;
 /// Share of the surface in view below which the points of the checked code are too few to be compared.
@@ -36,7 +36,8 @@ pub fn check(
     let (Some(view), Shape::Cuboid(cuboid)) = (&spec.view, &cell.objects[spec.work_piece.0].shape) else { return };
     let points = box_points(cuboid.half_extents);
     let solids: Vec<Vec<Guarded>> = spec.members.iter().map(|m| Guarded::all(&cell.robots[m.robot.0])).collect();
-    'samples: for (k, sample) in track.samples.iter().enumerate().step_by(EVERY) {
+    let every = track.samples.len().div_ceil(INSTANTS).max(1);
+    'samples: for (k, sample) in track.samples.iter().enumerate().step_by(every) {
         let mut placed: Placed<'_> = Vec::new();
         for (m, solids) in spec.members.iter().zip(&solids) {
             // The sample is the end of the tick; the last one has no state.
