@@ -129,7 +129,7 @@ class JointMap:
         return cls(robot, joints, centers, dict(blocked_by), blocked)
 
     def to_numpy(self) -> npt.NDArray[np.bool_]:
-        """Return the cells, true where the robot may touch an object; the axes are those of `joints`."""
+        """Return the cells: true if the robot may touch an object there; an axis per joint of `joints`."""
         return self._cells
 
     @property

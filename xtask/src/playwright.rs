@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::shell;
+use crate::{python, shell};
 
 /// Pinned, so that tests are driven in the same way everywhere.
 const PACKAGE: &str = "playwright==1.65.2";
@@ -25,11 +25,8 @@ pub fn install(root: &Path) -> Result<PathBuf, String> {
         println!("{FOLDER} has {PACKAGE}");
         return Ok(python);
     }
-    shell::run(root, "python3", &["-m", "venv", "--clear", FOLDER], &[]).map_err(|e| explain(&e))?;
-    let python = root.join(FOLDER).join("bin/python");
-    let args = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", PACKAGE];
     let env = [("PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD", "1")];
-    shell::run(root, &python.to_string_lossy(), &args, &env).map_err(|e| explain(&e))?;
+    python::environment(root, &root.join(FOLDER), &[PACKAGE], &env).map_err(|e| explain(&e))?;
     ready(root).ok_or_else(|| explain("it is installed, but does not start"))
 }
 

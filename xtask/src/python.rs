@@ -5,6 +5,11 @@ use std::path::{Path, PathBuf};
 
 use crate::shell;
 
+/// What the tests in Python run with.
+pub const PYTEST: &str = "pytest==9.2.0";
+/// What the tests in Python make random input with.
+pub const HYPOTHESIS: &str = "hypothesis==6.170.17";
+
 /// Pinned, so that a test compares with the same reference everywhere.
 const PACKAGES: [&str; 8] = [
     "pin==4.1.0",
@@ -12,8 +17,8 @@ const PACKAGES: [&str; 8] = [
     "mcap==1.6.0",
     "mcap-ros2-support==0.6.0",
     "rosbags==0.11.9",
-    "pytest==9.2.0",
-    "hypothesis==6.170.17",
+    PYTEST,
+    HYPOTHESIS,
     "mypy==2.4.1",
 ];
 
@@ -44,16 +49,25 @@ pub fn install(root: &Path) -> Result<(), String> {
         println!("target/venv has {}", PACKAGES.join(", "));
         return Ok(());
     }
-    create(root)?;
-    let python = interpreter(root);
-    let args: Vec<&str> =
-        ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"].into_iter().chain(PACKAGES).collect();
-    shell::run(root, &python.to_string_lossy(), &args, &[]).map_err(|e| explain(&e))?;
+    environment(root, &root.join("target/venv"), &PACKAGES, &[]).map_err(|e| explain(&e))?;
     ready(root).map(|_| ()).ok_or_else(|| explain("the packages are installed, but cannot be imported"))
 }
 
-fn create(root: &Path) -> Result<(), String> {
-    let make = ["-m", "venv", "--clear", "target/venv"];
+/// Makes a new virtual environment with packages from PyPI, and returns its interpreter.
+///
+/// # Errors
+/// If Python, `venv` or the packages cannot be installed.
+pub fn environment(root: &Path, folder: &Path, packages: &[&str], env: &[(&str, &str)]) -> Result<PathBuf, String> {
+    create(root, folder)?;
+    let python = folder.join("bin/python");
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    shell::run(root, &python.to_string_lossy(), &[&install[..], packages].concat(), env)?;
+    Ok(python)
+}
+
+fn create(root: &Path, folder: &Path) -> Result<(), String> {
+    let folder = folder.to_string_lossy();
+    let make = ["-m", "venv", "--clear", &folder];
     if shell::run(root, "python3", &make, &[]).is_ok() {
         return Ok(());
     }
@@ -61,14 +75,14 @@ fn create(root: &Path) -> Result<(), String> {
     let install = ["install", "-y", "--no-install-recommends", "python3", "python3-venv"];
     let env = [("DEBIAN_FRONTEND", "noninteractive")];
     let updated = shell::run(root, "apt-get", &["update", "-q"], &env);
-    updated.and_then(|()| shell::run(root, "apt-get", &install, &env)).map_err(|e| explain(&e))?;
-    shell::run(root, "python3", &make, &[]).map_err(|e| explain(&e))
+    updated.and_then(|()| shell::run(root, "apt-get", &install, &env))?;
+    shell::run(root, "python3", &make, &[])
 }
 
 fn explain(reason: &str) -> String {
     format!(
-        "{reason}\n  The tests of kinematics, shapes and recordings compare with {} in target/venv. Install python3 (3.11 or later) with venv and \
-         give pip a registry, or run `cargo xtask test --offline`, which leaves that comparison out and says so.",
-        PACKAGES.join(" and ")
+        "{reason}\n  The tests of kinematics, shapes, recordings and of the Python package need {} in target/venv. Install python3 (3.11 or \
+         later) with venv and give pip a registry, or run `cargo xtask test --offline`, which leaves these tests out and says so.",
+        PACKAGES.join(", ")
     )
 }

@@ -2,19 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use xtask::shell;
+use xtask::{python, shell};
 
 /// Builds the wheel. Pinned, as everything that makes a release.
 const MATURIN: &str = "maturin==1.16.0";
-/// What the tests of the package need, beside the package.
-const TEST_PACKAGES: [&str; 2] = ["pytest==9.2.0", "hypothesis==6.170.17"];
 /// Largest wheel, bytes.
 const LARGEST: u64 = 25 * 1024 * 1024;
 
 /// Builds `target/wheels/elbowroom-VERSION-…whl`, and runs the tests with it in a new environment.
 pub fn run(root: &Path) -> Result<(), String> {
     let target = shell::target_folder(root);
-    let builder = environment(root, &target.join("wheel/build"), &[MATURIN])?;
+    let builder = python::environment(root, &target.join("wheel/build"), &[MATURIN], &[])?;
     let wheels = target.join("wheels");
     if wheels.exists() {
         std::fs::remove_dir_all(&wheels).map_err(|e| format!("{}: {e}", wheels.display()))?;
@@ -29,20 +27,12 @@ pub fn run(root: &Path) -> Result<(), String> {
         return Err(format!("the wheel has {bytes} bytes, more than {LARGEST}"));
     }
     let file = wheel.to_string_lossy().into_owned();
-    let python = environment(root, &target.join("wheel/test"), &[&[file.as_str()], &TEST_PACKAGES[..]].concat())?;
+    let python =
+        python::environment(root, &target.join("wheel/test"), &[&file, python::PYTEST, python::HYPOTHESIS], &[])?;
     let python = python.to_string_lossy().into_owned();
     let tests = root.join("python/tests").to_string_lossy().into_owned();
     // From another folder, so that the installed package is found and not its sources.
     shell::run(&target.join("wheel"), &python, &["-m", "pytest", "-q", "-p", "no:cacheprovider", &tests], &[])
-}
-
-/// A new virtual environment with packages.
-fn environment(root: &Path, folder: &Path, packages: &[&str]) -> Result<PathBuf, String> {
-    shell::run(root, "python3", &["-m", "venv", "--clear", &folder.to_string_lossy()], &[])?;
-    let python = folder.join("bin/python");
-    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
-    shell::run(root, &python.to_string_lossy(), &[&install[..], packages].concat(), &[])?;
-    Ok(python)
 }
 
 fn only_wheel(folder: &Path) -> Result<PathBuf, String> {

@@ -41,7 +41,7 @@ impl GridStates {
 fn cell_of(grid: &Grid, config: &Configuration, now: &Placement, former: u32) -> u32 {
     match &grid.space {
         GridSpace::Tcp { frame_in_world } => {
-            let Some(tcp) = now.tcp(config) else { return 0 };
+            let Some(tcp) = now.tcp() else { return 0 };
             let p = frame_in_world.inverse_transform_point(now.volume_in_world[tcp.0].translation);
             grid.cell(p.to_array().into_iter().map(|at| Coordinate { at, turn: 0.0 }), former)
         }

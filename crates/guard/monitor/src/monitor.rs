@@ -213,7 +213,7 @@ impl Monitor {
 
     /// The tool centre point of the tool that is mounted; `None` if no tool is.
     pub fn tcp(&self) -> Option<VolumeId> {
-        self.now.tcp(&self.config)
+        self.now.tcp()
     }
 
     /// Forgets where the robot was: the next joint values may be anywhere without being [too fast](Fault::TooFast). Call

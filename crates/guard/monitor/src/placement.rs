@@ -24,12 +24,15 @@ pub(crate) struct Placement {
     pub(crate) region_in_world: Vec<Pose>,
     pub(crate) region_box: Vec<Aabb>,
     pub(crate) dynamic_regions: Vec<DynamicRegion>,
+    /// The volumes of tool centre points.
+    tcps: Vec<VolumeId>,
 }
 
 impl Placement {
     pub(crate) fn new(config: &Configuration) -> Self {
         let region_in_world: Vec<Pose> = config.regions.iter().map(|r| r.anchor * r.shape_in_anchor).collect();
         let aabb = |(r, pose): (&Region, &Pose)| r.shape.aabb(pose);
+        let tcps = config.volumes.iter().enumerate().filter(|(_, volume)| volume.part.is_tcp());
         let dynamic = |(i, r): (usize, &Region)| Some(DynamicRegion { region: RegionId(i), source: r.follow? });
         Self {
             chain: ChainState::new(&config.chain),
@@ -39,14 +42,13 @@ impl Placement {
             region_box: config.regions.iter().zip(&region_in_world).map(aabb).collect(),
             region_in_world,
             dynamic_regions: config.regions.iter().enumerate().filter_map(dynamic).collect(),
+            tcps: tcps.map(|(i, _)| VolumeId(i)).collect(),
         }
     }
 
-    /// The tool centre point of the tool that is mounted: those of exchanged tools are attached and detached. `None` if no
-    /// tool is mounted.
-    pub(crate) fn tcp(&self, config: &Configuration) -> Option<VolumeId> {
-        let is_there = |(i, volume): &(usize, &crate::Volume)| volume.part.is_tcp() && self.attached.contains(*i);
-        config.volumes.iter().enumerate().find(is_there).map(|(i, _)| VolumeId(i))
+    /// The tool centre point of the tool that is mounted: exchanged tools are attached and detached. `None` without a tool.
+    pub(crate) fn tcp(&self) -> Option<VolumeId> {
+        self.tcps.iter().copied().find(|tcp| self.attached.contains(tcp.0))
     }
 
     /// Places everything as in the snapshot. If it has no joint velocities, `velocity` (empty at rest) replaces them.
