@@ -174,8 +174,8 @@ fn fmt(context: &Context) -> Result<(), String> {
 fn clippy(context: &Context) -> Result<(), String> {
     let args = [&["clippy"], &WORKSPACE[..], &["--all-targets", "--", "-D", "warnings"]].concat();
     shell::cargo(context.root, &args, &beside_tests(context))?;
-    // Without the feature only the command and the façade differ.
-    let without = ["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"];
+    // Without the feature only the façade and the command differ.
+    let without = ["clippy", "-p", "elbowroom-cli", "--bins", "--", "-D", "warnings"];
     shell::cargo(context.root, &without, &beside_tests(context))
 }
 

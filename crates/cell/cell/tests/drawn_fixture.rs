@@ -234,7 +234,7 @@ fn a_file_that_has_changed_is_not_overwritten_also_not_by_the_second_of_two_edit
     // Of many editors at once, one writes.
     let folder = Folder::with(CELL);
     let written: usize = std::thread::scope(|scope| {
-        let editors: Vec<_> = (0..8).map(|k| (folder.editor(), k)).collect();
+        let editors: Vec<_> = (0..4).map(|k| (folder.editor(), k)).collect();
         let threads: Vec<_> = editors
             .into_iter()
             .map(|(mut editor, k)| {

@@ -18,7 +18,7 @@ const MAX_LEVEL: f64 = 4_294_967_294.0;
 ///
 /// None in practice: the encoder writes to memory.
 pub fn deflated(bytes: &[u8]) -> io::Result<String> {
-    let mut encoder = DeflateEncoder::new(Vec::with_capacity(bytes.len() / 3), Compression::new(7));
+    let mut encoder = DeflateEncoder::new(Vec::with_capacity(bytes.len() / 3), Compression::new(5));
     encoder.write_all(bytes)?;
     Ok(STANDARD.encode(encoder.finish()?))
 }

@@ -333,7 +333,7 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
     let ended = AtomicBool::new(false);
     let mut steps = vec![
         json!({ "do": "wait", "until": "s.t_s > 3" }),
-        json!({ "do": "sleep", "ms": 5000 }),
+        json!({ "do": "sleep", "ms": 3300 }),
         json!({ "do": "press", "key": " ", "until": "!s.live" }),
         json!({ "do": "sleep", "ms": 700 }),
         json!({ "do": "press", "key": "ArrowLeft" }),

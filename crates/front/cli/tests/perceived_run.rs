@@ -4,8 +4,10 @@
 
 #![allow(clippy::print_stdout, reason = "figures of the evidence")]
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{LazyLock, Mutex};
 
 use crate::common::{Answer, elbowroom};
 use elbowroom::formats::image::{ImageHeader, PixelFormat};
@@ -119,9 +121,59 @@ fn learning_joints(t_s: f64) -> [f64; 6] {
     [60.0 * (t_s * 5.0).cos(), -31.1, 76.6, 0.0, 44.5, 0.0].map(f64::to_radians)
 }
 
+/// Number of frames, and when the crate leaves, as bits.
+type Scene = (usize, u64);
+
+/// Files of frames that several tests read, made once.
+#[derive(Default)]
+struct Frames(Mutex<BTreeMap<Scene, Vec<(PathBuf, Vec<u8>)>>>);
+
+impl Frames {
+    /// Writes the files of a scene, which `make` makes for the first test that asks for them.
+    fn write(&self, dir: &Path, frames: usize, leaves_s: f64, make: fn(&Path, usize, f64)) {
+        let mut made = self.0.lock().unwrap();
+        let files = made.entry((frames, leaves_s.to_bits())).or_insert_with(|| {
+            let folder = tempfile::tempdir().unwrap();
+            make(folder.path(), frames, leaves_s);
+            files_below(folder.path())
+        });
+        for (name, bytes) in files {
+            let file = dir.join(name);
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, bytes).unwrap();
+        }
+    }
+}
+
+/// The files of a folder and of the folders in it, with their names relative to it.
+fn files_below(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        let name = PathBuf::from(path.file_name().unwrap());
+        if path.is_dir() {
+            found.extend(files_below(&path).into_iter().map(|(below, bytes)| (name.join(below), bytes)));
+        } else {
+            found.push((name, std::fs::read(path).unwrap()));
+        }
+    }
+    found
+}
+
+/// Writes pictures of the crate, their times, and the joint values of the first ones.
+pub(crate) fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
+    static PICTURES: LazyLock<Frames> = LazyLock::new(Frames::default);
+    PICTURES.write(dir, frames, leaves_s, draw_pictures);
+}
+
+/// Writes clouds of the crate and their times.
+pub(crate) fn write_clouds(dir: &Path, frames: usize, leaves_s: f64) {
+    static CLOUDS: LazyLock<Frames> = LazyLock::new(Frames::default);
+    CLOUDS.write(dir, frames, leaves_s, scan_clouds);
+}
+
 /// Writes pictures of the crate and their times, as files. The pictures of the empty cell show the arm, whose joint
 /// values are known; later ones do not show the arm, whose motion is not known yet.
-pub(crate) fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
+fn draw_pictures(dir: &Path, frames: usize, leaves_s: f64) {
     let folder = dir.join("pictures");
     std::fs::create_dir(&folder).unwrap();
     let robot = load(&elbowroom_testkit::folder::model("kr125"), &LoadOptions::default()).unwrap().robot;
@@ -154,7 +206,7 @@ pub(crate) fn write_pictures(dir: &Path, frames: usize, leaves_s: f64) {
 
 /// Writes clouds of the crate, the floor, a known pillar and an unknown rack that is there from the beginning, as PCD
 /// files in the frame of the sensor.
-pub(crate) fn write_clouds(dir: &Path, frames: usize, leaves_s: f64) {
+fn scan_clouds(dir: &Path, frames: usize, leaves_s: f64) {
     let folder = dir.join("clouds");
     std::fs::create_dir(&folder).unwrap();
     let (mut times, mut seed) = ("file,t_s\n".to_owned(), 1_u64);

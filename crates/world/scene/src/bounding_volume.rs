@@ -45,8 +45,14 @@ fn outermost(points: &[Vec3]) -> Vec<Vec3> {
         Vec3::new(r * cos, r * sin, z)
     };
     let axes = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z];
-    let outer = |d: Vec3| points.iter().copied().max_by(|p, q| p.dot(d).total_cmp(&q.dot(d)));
-    (0..DIRECTIONS).map(direction).chain(axes).filter_map(outer).collect()
+    let outer = |d: Vec3| {
+        let farther = |(most, outer): (f64, Vec3), &p: &Vec3| {
+            let reach = p.dot(d);
+            if reach >= most { (reach, p) } else { (most, outer) }
+        };
+        points.iter().fold((f64::NEG_INFINITY, Vec3::ZERO), farther).1
+    };
+    (0..DIRECTIONS).map(direction).chain(axes).map(outer).collect()
 }
 
 fn size(points: &[Vec3]) -> f64 {

@@ -11,8 +11,7 @@ pub(super) fn smallest(points: &[Vec3]) -> (Vec3, f64) {
     let mut basis = vec![first];
     let mut sphere = (first, 0.0);
     for _ in 0..1000 {
-        let outermost = points.iter().map(|&p| (p.distance(sphere.0), p)).max_by(|x, y| x.0.total_cmp(&y.0));
-        let Some((reach, p)) = outermost else { break };
+        let (reach, p) = farthest(points, sphere.0);
         if reach <= sphere.1 * (1.0 + 1e-13) {
             break;
         }
@@ -23,49 +22,68 @@ pub(super) fn smallest(points: &[Vec3]) -> (Vec3, f64) {
         }
         (sphere, basis) = (next, support);
     }
-    let reach = points.iter().fold(0.0, |r: f64, p| r.max(p.distance(sphere.0)));
-    (sphere.0, reach)
+    (sphere.0, farthest(points, sphere.0).0)
+}
+
+/// The largest distance from a centre, and the last point that has it.
+///
+/// Squares are compared first: roots are computed only for points that can share the largest distance after rounding.
+fn farthest(points: &[Vec3], center: Vec3) -> (f64, Vec3) {
+    let squared = |p: &Vec3| (*p - center).length_squared();
+    let largest = points.iter().fold(0.0, |m: f64, p| m.max(squared(p)));
+    let (reach, least) = (largest.sqrt(), largest * (1.0 - 4.0 * f64::EPSILON));
+    let has_reach = |p: &&Vec3| squared(p) >= least && p.distance(center) >= reach;
+    (reach, points.iter().rev().find(has_reach).copied().unwrap_or(center))
 }
 
 /// The smallest sphere around at most five points, found by testing all subsets of at most four, and that subset.
 fn of_few(points: &[Vec3]) -> Option<((Vec3, f64), Vec<Vec3>)> {
-    let mut best: Option<((Vec3, f64), Vec<Vec3>)> = None;
+    let mut best: Option<((Vec3, f64), usize)> = None;
     for mask in 1_usize..1 << points.len() {
         if mask.count_ones() > 4 {
             continue;
         }
-        let subset: Vec<Vec3> = (0..points.len()).filter(|i| mask >> i & 1 == 1).map(|i| points[i]).collect();
-        let Some(sphere) = circumscribed(&subset) else { continue };
-        let holds = points.iter().all(|p| p.distance(sphere.0) <= sphere.1 * (1.0 + 1e-12));
-        if holds && best.as_ref().is_none_or(|(b, _)| sphere.1 < b.1) {
-            best = Some((sphere, subset));
+        let (mut subset, mut count) = ([Vec3::ZERO; 4], 0);
+        for p in chosen(points, mask) {
+            subset[count] = p;
+            count += 1;
+        }
+        let Some(sphere) = circumscribed(&subset[..count]) else { continue };
+        let is_smaller = best.as_ref().is_none_or(|(b, _)| sphere.1 < b.1);
+        if is_smaller && points.iter().all(|p| p.distance(sphere.0) <= sphere.1 * (1.0 + 1e-12)) {
+            best = Some((sphere, mask));
         }
     }
-    best
+    best.map(|(sphere, mask)| (sphere, chosen(points, mask).collect()))
+}
+
+/// The points whose bits are set.
+fn chosen(points: &[Vec3], mask: usize) -> impl Iterator<Item = Vec3> {
+    points.iter().enumerate().filter(move |(i, _)| mask >> i & 1 == 1).map(|(_, &p)| p)
 }
 
 /// Sphere through one to four points with its centre in their affine hull; `None` if they are dependent.
 fn circumscribed(points: &[Vec3]) -> Option<(Vec3, f64)> {
-    let o = points[0];
-    let e: Vec<Vec3> = points[1..].iter().map(|&p| p - o).collect();
-    let offset = match e[..] {
-        [] => Vec3::ZERO,
-        [u] => u * 0.5,
-        [u, v] => {
+    let (o, offset) = match *points {
+        [o] => (o, Vec3::ZERO),
+        [o, p] => (o, (p - o) * 0.5),
+        [o, p, q] => {
+            let (u, v) = (p - o, q - o);
             let n = u.cross(v);
             let nn = n.length_squared();
             if !(nn > 1e-24 * u.length_squared() * v.length_squared()) {
                 return None;
             }
-            (n.cross(u) * v.length_squared() + v.cross(n) * u.length_squared()) / (2.0 * nn)
+            (o, (n.cross(u) * v.length_squared() + v.cross(n) * u.length_squared()) / (2.0 * nn))
         }
-        [u, v, w] => {
+        [o, p, q, r] => {
+            let (u, v, w) = (p - o, q - o, r - o);
             let det = u.dot(v.cross(w));
             if !(det.abs() > 1e-12 * u.length() * v.length() * w.length()) {
                 return None;
             }
             let (uu, vv, ww) = (u.length_squared(), v.length_squared(), w.length_squared());
-            (v.cross(w) * uu + w.cross(u) * vv + u.cross(v) * ww) / (2.0 * det)
+            (o, (v.cross(w) * uu + w.cross(u) * vv + u.cross(v) * ww) / (2.0 * det))
         }
         _ => return None,
     };

@@ -45,7 +45,7 @@ fn congruent(m: &[[f64; 3]; 3], turn: Rotation) -> [[f64; 3]; 3] {
 }
 
 /// Rotates a frame about its own axes by ever smaller steps while the cost decreases.
-pub(super) fn descend(start: Rotation, axes: &[Vec3], cost: impl Fn(Rotation) -> f64) -> (f64, Rotation) {
+pub(super) fn descend(start: Rotation, axes: &[Vec3], mut cost: impl FnMut(Rotation) -> f64) -> (f64, Rotation) {
     let mut best = (cost(start), start);
     let mut step = 0.3;
     while step > 1e-4 {

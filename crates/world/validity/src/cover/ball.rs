@@ -56,6 +56,11 @@ pub(crate) fn enclosing(balls: &[Ball]) -> Ball {
     let farthest = |c: Vec3| {
         let mut far = (reach(c, first), first);
         for ball in balls {
+            // Squares first: most balls are clearly nearer, and need no root.
+            let left = far.0 - ball.radius;
+            if left > 0.0 && (c - ball.centre).length_squared() < left * left * (1.0 - 1e-12) {
+                continue;
+            }
             let reached = reach(c, ball);
             if reached > far.0 {
                 far = (reached, ball);
