@@ -121,14 +121,14 @@ fn run_units(programs: &[Program], progress: Progress, env: &[(&str, &str)], bes
             run_one(&unit);
         }
     };
-    // Tests of live processes mostly wait: one more worker runs short units while processors are idle.
+    // Tests of live processes mostly wait: one more worker runs units while processors are idle.
     let work_in_gaps = || {
-        while let Some(idle) = idle_share(Duration::from_millis(300)) {
+        while let Some(idle) = idle_share(Duration::from_millis(150)) {
             if locked(&progress).open.is_empty() {
                 break;
             }
             if idle * workers as f64 > RESTING {
-                let next = locked(&progress).open.pop_back();
+                let next = locked(&progress).open.pop_front();
                 next.iter().for_each(run_one);
             }
         }

@@ -124,9 +124,12 @@ fn learning_joints(t_s: f64) -> [f64; 6] {
 /// Number of frames, and when the crate leaves, as bits.
 type Scene = (usize, u64);
 
+/// Names of files relative to a folder, and their bytes.
+type Files = Vec<(PathBuf, Vec<u8>)>;
+
 /// Files of frames that several tests read, made once.
 #[derive(Default)]
-struct Frames(Mutex<BTreeMap<Scene, Vec<(PathBuf, Vec<u8>)>>>);
+struct Frames(Mutex<BTreeMap<Scene, Files>>);
 
 impl Frames {
     /// Writes the files of a scene, which `make` makes for the first test that asks for them.
@@ -145,9 +148,9 @@ impl Frames {
     }
 }
 
-/// The files of a folder and of the folders in it, with their names relative to it.
-fn files_below(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut found = Vec::new();
+/// The files of a folder and of the folders in it.
+fn files_below(folder: &Path) -> Files {
+    let mut found = Files::new();
     for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
         let name = PathBuf::from(path.file_name().unwrap());
         if path.is_dir() {
