@@ -97,9 +97,9 @@ fn surroundings(root: &Path, env: &[(&str, &str)]) -> Option<u64> {
     settings.sort();
     settings.hash(&mut hasher);
     let files = shell::output(root, "git", &["ls-files", "-z", "--cached", "--others", "--exclude-standard"]).ok()?;
-    let is_read = |file: &&str| match Path::new(file).extension().and_then(OsStr::to_str) {
-        Some("rs" | "md") => false,
-        _ => true,
+    let is_read = |file: &&str| {
+        let ending = Path::new(file).extension().and_then(OsStr::to_str);
+        !matches!(ending, Some("rs" | "md"))
     };
     files.split_terminator('\0').filter(is_read).for_each(|file| look(&root.join(file), &mut hasher));
     look_into(&call::data_folder(root, None), &mut hasher);

@@ -6,7 +6,7 @@ use crate::{Chain, LinkId};
 
 /// Joint values of a chain, and the poses, velocities and accelerations of its links. [`ChainState::new`] allocates
 /// all memory.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct ChainState {
     /// Values of the independent joints, rad or m, in the order of [`Chain::active_joints`].
     pub q: Vec<f64>,
@@ -16,6 +16,23 @@ pub struct ChainState {
     pub qdd: Vec<f64>,
     pub(crate) poses: Vec<Pose>,
     pub(crate) motions: Vec<FrameMotion>,
+}
+
+impl Clone for ChainState {
+    fn clone(&self) -> Self {
+        let Self { q, qd, qdd, poses, motions } = self;
+        Self { q: q.clone(), qd: qd.clone(), qdd: qdd.clone(), poses: poses.clone(), motions: motions.clone() }
+    }
+
+    /// Reuses the memory of `self`.
+    fn clone_from(&mut self, source: &Self) {
+        let Self { q, qd, qdd, poses, motions } = source;
+        self.q.clone_from(q);
+        self.qd.clone_from(qd);
+        self.qdd.clone_from(qdd);
+        self.poses.clone_from(poses);
+        self.motions.clone_from(motions);
+    }
 }
 
 impl ChainState {

@@ -231,6 +231,9 @@ impl<'s> VirtualRobot<'s> {
     ///
     /// The work-piece moves on by the smaller override of the arms that carry it. Every motion is proven free before it is
     /// executed; an arm that is not free stands.
+    ///
+    /// Allocates nothing, but where an arm searches for its joint values at another grasp, at most once per step, and in
+    /// hand-overs.
     pub fn step(&mut self, dt_s: f64, overrides: &[f64]) -> CooperationStep {
         if !(dt_s > 0.0 && dt_s.is_finite()) || overrides.len() != self.members.len() {
             self.stand();

@@ -1,4 +1,5 @@
 //! Shields: closed, outside of what they protect, open along their target; compared with the formula.
+#![allow(clippy::print_stdout, reason = "figures of the evidence")]
 
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use elbowroom_shared_control::{
     NavigatorSettings, ProtectedSurface, Shield, ShieldError, ShieldSettings, ShieldTarget, SurfaceNavigator,
     generate_shield,
 };
-use elbowroom_spatial::{Pose, Vec3};
+use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::extent::amount;
 use elbowroom_testkit::random::SplitMix;
 
@@ -17,14 +18,15 @@ use crate::common::{ball, block, point};
 const SETTINGS: ShieldSettings =
     ShieldSettings { offset_m: 0.004, width_m: 0.012, depth_m: 0.005, flare_rad: 0.3, tolerance_m: 0.003 };
 
-/// Distances from the solid moved outwards and from the opening, negative inside. By the formula, foot by foot.
-fn formula(solid: &Shape, shield: &Shield, s: &ShieldSettings, p: Vec3) -> (f64, f64) {
+/// Distances from the solid moved outwards and from the opening, negative inside. By the formula, foot by foot; the opening
+/// ends at a height above the surface.
+fn formula(solid: &Shape, shield: &Shield, s: &ShieldSettings, p: Vec3, height_m: f64) -> (f64, f64) {
     let around = project_point(solid, &Pose::IDENTITY, p).signed_distance - s.offset_m;
     let opening = |(foot, axis): &(Vec3, Vec3)| {
         let z = axis.dot(p - *foot);
         let across = (p - *foot - *axis * z).length();
         let wall = s.flare_rad.cos() * (across - 0.5 * s.width_m) - s.flare_rad.sin() * (z + s.depth_m);
-        wall.max(-(z + s.depth_m)).max(z - s.offset_m - 2.0 * s.tolerance_m)
+        wall.max(-(z + s.depth_m)).max(z - height_m)
     };
     (around, shield.passage.iter().map(opening).fold(f64::INFINITY, f64::min))
 }
@@ -50,43 +52,111 @@ fn random_target(mesh: &Arc<TriMesh>, random: &mut SplitMix) -> ShieldTarget {
     }
 }
 
-#[test]
-fn shields_protect_everything_but_the_opening() {
+/// Calls `check` with shields around three solids for random targets, some of them without depth and flare.
+fn for_random_shields(mut check: impl FnMut(&Shape, &Shield, &ShieldSettings, &mut SplitMix)) {
     let mut random = SplitMix(12);
     let solids = [ball(0.03, 2), block(Vec3::new(0.06, 0.04, 0.03)), ball(0.02, 1)];
-    let (mut bare, mut protected, mut opened) = (0, 0, 0);
     for (case, solid) in solids.iter().cycle().take(9).enumerate() {
         let target = random_target(solid, &mut random);
         let settings = if case >= 5 { ShieldSettings { flare_rad: 0.0, depth_m: 0.0, ..SETTINGS } } else { SETTINGS };
-        let shield = match generate_shield(solid, &target, &settings) {
-            Ok(shield) => shield,
-            Err(ShieldError::LeavesSurface { .. }) => continue,
+        match generate_shield(solid, &target, &settings) {
+            Ok(shield) => check(&Shape::Mesh(solid.clone()), &shield, &settings, &mut random),
+            Err(ShieldError::LeavesSurface { .. }) => {}
             Err(error) => panic!("{target:?}: {error}"),
-        };
+        }
+    }
+}
+
+#[test]
+fn shields_protect_everything_but_the_opening() {
+    let (mut bare, mut protected, mut opened) = (0, 0, 0);
+    for_random_shields(|shape, shield, settings, random| {
         let report = shield.mesh.report();
-        assert!(report.closed && !report.inside_out && report.degenerate == 0, "{case}: {report:?}");
+        assert!(report.closed && !report.inside_out && report.degenerate == 0, "{report:?}");
         assert!(ProtectedSurface::new(shield.mesh.clone(), Pose::IDENTITY).is_ok());
-        let shape = Shape::Mesh(solid.clone());
         let bounds = *shield.mesh.aabb();
         for k in 0..amount(3000, 150_000) {
             let p = if k % 2 == 0 {
                 bounds.min + Vec3::from(random.within(0.5)).scale(bounds.extent()) + bounds.extent() * 0.5
             } else {
                 let (foot, axis) = shield.passage[random.below(shield.passage.len())];
-                foot + axis * random.between(-0.01, 0.02) + point(&mut random, 0.01)
+                foot + axis * random.between(-0.01, 0.02) + point(random, 0.01)
             };
-            let (solid, opening) = formula(&shape, &shield, &settings, p);
+            let (solid, opening) = formula(shape, shield, settings, p, settings.offset_m + 2.0 * settings.tolerance_m);
             if solid <= 0.0 && opening > settings.tolerance_m {
                 protected += 1;
-                assert!(shield.mesh.contains(p), "{case}: {p:?} is bare: {solid} {opening}");
+                assert!(shield.mesh.contains(p), "{p:?} is bare: {solid} {opening}");
             } else if solid > settings.tolerance_m || opening < -settings.tolerance_m {
                 bare += 1;
                 opened += k % 2;
-                assert!(!shield.mesh.contains(p), "{case}: {p:?} is blocked: {solid} {opening}");
+                assert!(!shield.mesh.contains(p), "{p:?} is blocked: {solid} {opening}");
             }
         }
-    }
+    });
     assert!(protected > 5000 && bare > 5000 && opened > 2000, "{protected} protected, {bare} bare, {opened} opened");
+}
+
+/// Points of a block, as a grid: between them the distances change by at most `beside_m`.
+struct ToolPoints {
+    points: Vec<Vec3>,
+    beside_m: f64,
+}
+
+impl ToolPoints {
+    fn of_block(size: Vec3, step_m: f64) -> Self {
+        let count = |length: f64| (length / step_m).ceil() as usize;
+        let at = |i: usize, length: f64| (i as f64 / count(length) as f64 - 0.5) * length;
+        let mut points = Vec::new();
+        for i in 0..=count(size.x) {
+            for j in 0..=count(size.y) {
+                points.extend((0..=count(size.z)).map(|k| Vec3::new(at(i, size.x), at(j, size.y), at(k, size.z))));
+            }
+        }
+        Self { points, beside_m: 0.5 * 3.0_f64.sqrt() * step_m }
+    }
+}
+
+/// A tool may be wherever no point of it is in the shield, by the formula; nothing is left open for it elsewhere.
+#[test]
+fn tools_meet_the_shield_where_the_formula_says() {
+    let size = Vec3::new(0.002, 0.002, 0.02);
+    let (tool, grid) = (Shape::Mesh(block(size)), ToolPoints::of_block(size, 0.001));
+    let (mut free, mut in_opening, mut blocked) = (0, 0, 0);
+    for_random_shields(|solid, shield, settings, random| {
+        let shape = Shape::Mesh(shield.mesh.clone());
+        let mut workspace = Workspace::new();
+        for k in 0..amount(300, 125_000) {
+            let (foot, axis) = shield.passage[random.below(shield.passage.len())];
+            let tilt = Rotation::from_rotation_vector(point(random, if k % 2 == 0 { 0.1 } else { 3.0 }));
+            let middle = foot + axis * random.between(0.0, 0.03) + point(random, if k % 2 == 0 { 0.001 } else { 0.03 });
+            let pose = Pose::new(tilt * Rotation::from_z(axis), middle);
+            // Negative inside the shield; no two points differ by more than they are apart.
+            let outside = |p: &Vec3| {
+                // Above the opening nothing of a convex solid's shield is in the way.
+                let (around, opening) = formula(solid, shield, settings, pose.transform_point(*p), f64::INFINITY);
+                around.max(-opening)
+            };
+            let least = grid.points.iter().map(outside).fold(f64::INFINITY, f64::min);
+            let meets = workspace.collides(&tool, &pose, &shape, &Pose::IDENTITY);
+            if least < -settings.tolerance_m {
+                blocked += 1;
+                assert!(meets, "{pose:?} is open: {least} m");
+            } else if least > settings.tolerance_m + grid.beside_m {
+                free += 1;
+                let is_below_the_shield = |p: &Vec3| {
+                    let p = pose.transform_point(*p);
+                    project_point(solid, &Pose::IDENTITY, p).signed_distance < settings.offset_m
+                };
+                in_opening += usize::from(grid.points.iter().any(is_below_the_shield));
+                assert!(!meets, "{pose:?} is blocked: {least} m");
+            }
+        }
+    });
+    println!("{free} poses free, {in_opening} of them in an opening, {blocked} blocked");
+    assert!(
+        free > 300 && in_opening > 20 && blocked > 300,
+        "{free} free, {in_opening} in an opening, {blocked} blocked"
+    );
 }
 
 #[test]
