@@ -47,9 +47,9 @@ def cell(path: Path, expected: str) -> _elbowroom.Cell:
     return _elbowroom.Cell.load(path)
 
 
-def checker(source: Any, level: str, between: str | None) -> _elbowroom.Checker:
+def checker(source: Any, level: str, between: str | None, threads: int | None) -> _elbowroom.Checker:
     """Make a pickled checker."""
-    return _elbowroom.Checker(source, level=level, between=between)
+    return _elbowroom.Checker(source, level=level, between=between, threads=threads)
 
 
 def reduced_robot(files: tuple[Any, ...]) -> _Reduced:
@@ -64,6 +64,6 @@ def reduced_cell(path: Path) -> _Reduced:
     return cell, (path, checksum(path))
 
 
-def reduced_checker(source: Any, level: str, between: str | None) -> _Reduced:
+def reduced_checker(source: Any, level: str, between: str | None, threads: int | None) -> _Reduced:
     """Return what a pickle of a checker has."""
-    return checker, (source, level, between)
+    return checker, (source, level, between, threads)

@@ -76,6 +76,16 @@ def test_collision_distance_and_tolerance_agree(seed: int, tolerance: float) -> 
     assert np.abs(apart - found.distance_m)[found.distance_m > 0].max(initial=0.0) < 1e-8
 
 
+def test_the_number_of_threads_changes_nothing() -> None:
+    q = states(6, 1500)
+    alone = er.Checker(ROBOT, threads=1)
+    assert (alone.distance(q) == CHECKER.distance(q)).all()
+    assert (pickle.loads(pickle.dumps(alone)).collides(q) == CHECKER.collides(q)).all()
+    assert (CHECKER.limits == ROBOT.limits).all()
+    with pytest.raises(ValueError):
+        er.Checker(ROBOT, threads=0)
+
+
 def test_strides_and_read_only_arrays_do_not_matter() -> None:
     q = states(6, 400)
     expected = CHECKER.distance(q)

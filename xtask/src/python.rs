@@ -10,8 +10,15 @@ pub const PYTEST: &str = "pytest==9.2.0";
 /// What the tests in Python make random input with.
 pub const HYPOTHESIS: &str = "hypothesis==6.170.17";
 
+/// What sweeps write with.
+pub const PYARROW: &str = "pyarrow==26.0.1";
+/// The cluster of sweeps.
+pub const RAY: &str = "ray==2.60.0";
+/// Sequences of states of sweeps.
+pub const SCIPY: &str = "scipy==1.17.1";
+
 /// Pinned, so that a test compares with the same reference everywhere.
-const PACKAGES: [&str; 8] = [
+const PACKAGES: [&str; 11] = [
     "pin==4.1.0",
     "numpy==2.4.6",
     "mcap==1.6.0",
@@ -20,6 +27,9 @@ const PACKAGES: [&str; 8] = [
     PYTEST,
     HYPOTHESIS,
     "mypy==2.4.1",
+    PYARROW,
+    RAY,
+    SCIPY,
 ];
 
 /// Checks that the pinned versions are installed.
@@ -27,7 +37,8 @@ const PROBE: &str = "import pinocchio, coal, numpy, mcap_ros2.decoder, rosbags.t
 from importlib.metadata import version
 assert pinocchio.__version__ == '4.1.0' and numpy.__version__ == '2.4.6'
 assert (version('mcap'), version('mcap-ros2-support'), version('rosbags')) == ('1.6.0', '0.6.0', '0.11.9')
-assert (version('pytest'), version('hypothesis'), version('mypy')) == ('9.2.0', '6.170.17', '2.4.1')";
+assert (version('pytest'), version('hypothesis'), version('mypy')) == ('9.2.0', '6.170.17', '2.4.1')
+assert (version('pyarrow'), version('ray'), version('scipy')) == ('26.0.1', '2.60.0', '1.17.1')";
 
 /// Path of the interpreter inside `target/venv`, whether or not it exists.
 pub fn interpreter(root: &Path) -> PathBuf {

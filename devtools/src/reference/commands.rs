@@ -6,7 +6,7 @@ use std::path::Path;
 use xtask::shell;
 
 /// Links to the guide of each verb.
-const GUIDES: [(&str, &str); 18] = [
+const GUIDES: [(&str, &str); 19] = [
     ("run", "[cell file](cell-file.md#how-a-run-proceeds)"),
     ("check", "[laws](laws.md#2-what-the-warning-law-does-to-a-robot)"),
     ("query", "[queries](query.md)"),
@@ -14,6 +14,7 @@ const GUIDES: [(&str, &str); 18] = [
     ("convert", "[models](models.md#writing), [recordings](recordings.md)"),
     ("map", "[map](map.md)"),
     ("plan", "[planning](plan.md)"),
+    ("sweep", "[sweeps](python.md#sweeps)"),
     ("rules", "[avoidance](avoidance.md#the-rules)"),
     ("fixture", "[virtual fixtures](fixtures.md)"),
     ("teach", "[quickstart](quickstart.md#5-teach-a-region)"),

@@ -237,6 +237,7 @@ fn motions_are_free_until_their_first_contact() {
         pairs: &pairs,
         all_pairs_m: None,
         start: &start,
+        threads: None,
     };
     let mut rows = Vec::new();
     let effort = evaluate_motions(&scene, &states, &query, &mut |block| {

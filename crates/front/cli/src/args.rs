@@ -40,6 +40,8 @@ pub(crate) enum Command {
     Map(MapArgs),
     /// Find a collision-free, timed path of a robot from one joint state to another, or solve a file of planning problems
     Plan(crate::plan_args::PlanArgs),
+    /// Answer queries about very many states, on one machine or on a cluster (needs the Python package)
+    Sweep(SweepArgs),
     /// Print the fuzzy rules of obstacle avoidance, or write them to a file for editing
     Rules(RulesArgs),
     /// Build a region for the cell file from taught points
@@ -403,6 +405,18 @@ pub(crate) struct WatchArgs {
     /// Print one JSON document per picture, a line each
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct SweepArgs {
+    /// TOML file of the task: the model, its states, and what is asked about them
+    pub(crate) task: PathBuf,
+    /// Folder for the Parquet parts and `manifest.json`; a sweep that was interrupted goes on there [default: the task's]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Where the work is done: `local` or `ray` [default: the task's]
+    #[arg(long, value_name = "WHERE")]
+    pub(crate) executor: Option<String>,
 }
 
 #[derive(Debug, Args)]

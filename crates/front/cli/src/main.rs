@@ -36,6 +36,7 @@ mod rules;
 mod run;
 mod simulation;
 mod states;
+mod sweep;
 mod taught_fence;
 mod taught_part;
 mod taught_region;
@@ -62,6 +63,7 @@ fn main() -> ExitCode {
         Some(Command::Map(args)) => map::map(&args),
         Some(Command::Plan(args)) => plan::plan(&args),
         Some(Command::Fixture(args)) => fixture::fixture(&args),
+        Some(Command::Sweep(args)) => sweep::sweep(&args),
         Some(Command::Rules(args)) => rules::rules(&args),
         Some(Command::Teach(args)) => teach::teach(&args),
         Some(Command::WatchCamera(args)) => watch::watch(&args),

@@ -67,7 +67,7 @@ pub(crate) fn query(args: &QueryArgs) -> Result<ExitStatus, Failure> {
         matrix: !effort.no_matrix,
     };
     let (kind, all_pairs_m, is_timed) = (args.ask, args.all_pairs, effort.times);
-    let query = Query { kind, options, is_timed, pairs: &pairs, all_pairs_m, start: &start };
+    let query = Query { kind, options, is_timed, pairs: &pairs, all_pairs_m, start: &start, threads: None };
     let effort = answer((&scene, &model), &states, &query, &mut writer)?;
     writer.end(effort)?;
     Ok(if args.ask == QueryKind::Collision && writer.counted > 0 {

@@ -1,11 +1,12 @@
 //! Collision and distance of many states.
 
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use elbowroom::cell::{OutOfReachProofs, QueryModel};
 use elbowroom::query::{self, Level, Query, QueryKind, QueryPairs, QueryRow, QueryStates};
 use elbowroom::scene::{CheckerOptions, Scene, SceneState};
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{CHUNK, Rows};
@@ -36,6 +37,8 @@ struct Model {
 ///     two are conservative.
 /// between
 ///     Only these pairs, as `"arm,table;arm/link_3,post"`: robots, links, objects, regions.
+/// threads
+///     The most threads that work; `None`: one per core.
 ///
 /// Raises
 /// ------
@@ -59,6 +62,7 @@ pub struct Checker {
     source: Py<PyAny>,
     level: String,
     between: Option<String>,
+    threads: Option<NonZeroUsize>,
     options: CheckerOptions,
     pairs: QueryPairs,
 }
@@ -97,6 +101,7 @@ impl Checker {
             pairs: &self.pairs,
             all_pairs_m: None,
             start: &model.start,
+            threads: self.threads,
         };
         for begin in (0..rows.len()).step_by(CHUNK) {
             let states = QueryStates::of_rows(&model.query, rows.chunk(begin)?);
@@ -135,8 +140,13 @@ fn metres(row: &QueryRow) -> f64 {
 #[pymethods]
 impl Checker {
     #[new]
-    #[pyo3(signature = (source, *, level="auto", between=None))]
-    fn new(source: Bound<'_, PyAny>, level: &str, between: Option<String>) -> PyResult<Self> {
+    #[pyo3(signature = (source, *, level="auto", between=None, threads=None))]
+    fn new(
+        source: Bound<'_, PyAny>,
+        level: &str,
+        between: Option<String>,
+        threads: Option<NonZeroUsize>,
+    ) -> PyResult<Self> {
         let py = source.py();
         let parsed: Level = level.parse().map_err(|e| Fault::Argument(format!("`level`: {e}")))?;
         let (mut query, cell) = if let Ok(robot) = source.cast::<Robot>() {
@@ -158,13 +168,24 @@ impl Checker {
         };
         let model = py.detach(|| Model::new(query))?;
         let options = CheckerOptions { level: parsed, ..CheckerOptions::default() };
-        Ok(Self { model: Arc::new(model), source: source.unbind(), level: level.to_owned(), between, options, pairs })
+        let (source, level) = (source.unbind(), level.to_owned());
+        Ok(Self { model: Arc::new(model), source, level, between, threads, options, pairs })
     }
 
     /// The names of the columns of states: `joint` for a robot, `robot.joint` for a cell, side by side.
     #[getter]
     fn joints(&self) -> Vec<String> {
         self.model.columns.clone()
+    }
+
+    /// `(dof, 2)`: the least and the largest value of every column, rad or m; infinite without a limit.
+    #[getter]
+    fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let chains = self.model.query.robots.iter().map(|robot| &robot.robot.chain);
+        let limits = chains.flat_map(|chain| chain.lower().into_iter().zip(chain.upper()));
+        let limits: Vec<f64> = limits.flat_map(|(lower, upper)| [lower, upper]).collect();
+        let count = limits.len() / 2;
+        shaped(&PyArray1::from_vec(py, limits), [count, 2])
     }
 
     /// The joint values at the start, `(dof,)`.
@@ -266,7 +287,7 @@ impl Checker {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let args = (&self.source, &self.level, &self.between);
+        let args = (&self.source, &self.level, &self.between, self.threads);
         py.import("elbowroom.pickles")?.getattr("reduced_checker")?.call1(args)
     }
 }

@@ -1,6 +1,7 @@
 //! Parallel evaluation of queries, with ordered results.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;
@@ -31,6 +32,8 @@ pub struct Query<'q> {
     pub all_pairs_m: Option<f64>,
     /// The state before joint values are set, with carried objects.
     pub start: &'q SceneState,
+    /// Most threads that work; `None`: one per core.
+    pub threads: Option<NonZeroUsize>,
 }
 
 /// Like [`evaluate_query`], for all pairs.
@@ -46,7 +49,8 @@ pub fn evaluate(
 ) -> Result<CheckerStats, Diagnostic> {
     let (pairs, start) = (QueryPairs::all(), SceneState::new(scene));
     let options = CheckerOptions { level, ..CheckerOptions::default() };
-    let query = Query { kind, options, is_timed: false, pairs: &pairs, all_pairs_m: None, start: &start };
+    let query =
+        Query { kind, options, is_timed: false, pairs: &pairs, all_pairs_m: None, start: &start, threads: None };
     Ok(evaluate_query(scene, states, &query, take)?.stats)
 }
 
@@ -80,7 +84,7 @@ pub fn evaluate_query(
     query: &Query<'_>,
     take: &mut dyn FnMut(&[QueryRow]) -> bool,
 ) -> Result<QueryEffort, Diagnostic> {
-    evaluate_blocks(states, states.len(), &|block| rows_of_block(scene, states, query, block), take)
+    evaluate_blocks(states, (states.len(), query.threads), &|block| rows_of_block(scene, states, query, block), take)
 }
 
 /// Like [`evaluate_query`], with the touching triangles of all pairs in contact as rows.
@@ -93,21 +97,26 @@ pub fn evaluate_contacts(
     query: &Query<'_>,
     take: &mut dyn FnMut(&[ContactRow]) -> bool,
 ) -> Result<QueryEffort, Diagnostic> {
-    evaluate_blocks(states, states.len(), &|block| contacts_of_block(scene, states, query, block), take)
+    evaluate_blocks(
+        states,
+        (states.len(), query.threads),
+        &|block| contacts_of_block(scene, states, query, block),
+        take,
+    )
 }
 
 /// The rows of a block, and the work.
 pub(super) type BlockRows<R> = Result<(Vec<R>, QueryEffort), SceneError>;
 
-/// Evaluates blocks of `count` rows on all cores; `take` receives them in order.
+/// Evaluates blocks of so many rows on so many threads, or one per core; `take` receives them in order.
 pub(super) fn evaluate_blocks<R: Send>(
     states: &QueryStates,
-    count: usize,
+    (count, threads): (usize, Option<NonZeroUsize>),
     rows_of_block: &(dyn Fn(usize) -> BlockRows<R> + Sync),
     take: &mut dyn FnMut(&[R]) -> bool,
 ) -> Result<QueryEffort, Diagnostic> {
     let blocks = count.div_ceil(BLOCK);
-    let cores = cores(blocks);
+    let cores = cores(blocks, threads);
     let wrong = |e: SceneError| Diagnostic::new(&states.file, None, e);
     let mut done = QueryEffort::default();
     if cores <= 1 {
@@ -162,8 +171,9 @@ pub(super) fn evaluate_blocks<R: Send>(
 }
 
 /// Number of threads for some blocks. Asking for the cores takes tens of microseconds, as long as some states.
-fn cores(blocks: usize) -> usize {
-    if blocks < 2 { 1 } else { std::thread::available_parallelism().map_or(1, usize::from).min(blocks) }
+fn cores(blocks: usize, most: Option<NonZeroUsize>) -> usize {
+    let all = || most.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+    if blocks < 2 { 1 } else { all().min(blocks) }
 }
 
 /// The touching triangles of a block.

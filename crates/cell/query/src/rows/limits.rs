@@ -109,7 +109,7 @@ pub fn evaluate_limits(
         let indices = block * BLOCK..states.len().min((block + 1) * BLOCK);
         Ok((indices.map(|index| row(model, states, index)).collect(), QueryEffort::default()))
     };
-    evaluate_blocks(states, states.len(), &rows, take)
+    evaluate_blocks(states, (states.len(), None), &rows, take)
 }
 
 fn row(model: &QueryModel, states: &QueryStates, index: usize) -> LimitRow {

@@ -70,7 +70,7 @@ pub fn evaluate_motions(
     take: &mut dyn FnMut(&[MotionRow]) -> bool,
 ) -> Result<QueryEffort, Diagnostic> {
     let motions = states.len().saturating_sub(1);
-    evaluate_blocks(states, motions, &|block| motions_of_block(scene, states, query, block), take)
+    evaluate_blocks(states, (motions, query.threads), &|block| motions_of_block(scene, states, query, block), take)
 }
 
 fn motions_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<MotionRow> {

@@ -1,0 +1,19 @@
+"""Queries about very many states, shard by shard, on one machine or on a Ray cluster.
+
+A sweep is a task: a model, a set of states in a fixed order, and what is asked about them. The states are cut into shards. Each
+shard is computed on its own and becomes one Parquet file, written under another name first. So a sweep that was killed goes on
+where it stopped, a worker that dies costs only its shard, and nothing is lost or counted twice.
+
+>>> from elbowroom import sweep
+>>> task = sweep.Task.load("sweep.toml")     # doctest: +SKIP
+>>> sweep.run(task).colliding                # doctest: +SKIP
+
+The command `elbowroom sweep sweep.toml` and `python -m elbowroom.sweep sweep.toml` do the same. Needs pyarrow; `sobol` states
+need SciPy, and `executor = "ray"` needs Ray: `pip install 'elbowroom[sweep]'` has all of them.
+"""
+
+from elbowroom.sweep.driver import run
+from elbowroom.sweep.result import Result
+from elbowroom.sweep.task import Task
+
+__all__ = ["Result", "Task", "run"]

@@ -1,0 +1,30 @@
+"""`python -m elbowroom.sweep TASK.toml [--out DIR] [--executor local|ray]`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from elbowroom.errors import Error
+from elbowroom.sweep import Task, run
+
+
+def main() -> int:
+    """Run the task; 2 for invalid input."""
+    parser = argparse.ArgumentParser(prog="elbowroom sweep", description="Answer queries about very many states.")
+    parser.add_argument("task", type=Path, help="TOML file of the task")
+    parser.add_argument("--out", type=Path, help="folder for the parts and the manifest")
+    parser.add_argument("--executor", choices=["local", "ray"], help="where the work is done")
+    words = parser.parse_args()
+    try:
+        result = run(Task.load(words.task), out=words.out, executor=words.executor, progress=True)
+    except Error as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    print(result)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

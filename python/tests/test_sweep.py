@@ -1,0 +1,223 @@
+"""Sweeps: the answers of a checker, however they are cut, interrupted, or spread over a cluster."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import elbowroom as er
+from conftest import ROOT
+from elbowroom import sweep
+from elbowroom.sweep import driver
+from elbowroom.sweep.states import Grid, Random, Sobol, States, Table
+
+RX60B = ROOT / "examples/models/rx60b/rx60b.urdf"
+LIMITS = np.array([[-1.0, 2.0], [-np.inf, np.inf], [0.0, 0.5]])
+
+
+def task(out: Path, states: States, **others: Any) -> sweep.Task:
+    return sweep.Task(RX60B, states, out, **{"is_cell": False, "shard_rows": 200} | others)
+
+
+def columns(result: sweep.Result) -> dict[str, npt.NDArray[Any]]:
+    parts = list(result.batches())
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+@given(st.integers(0, 500), st.integers(1, 200), st.sampled_from(["random", "sobol", "grid"]))
+@settings(max_examples=60, deadline=None)
+def test_a_part_of_the_states_is_the_same_alone(first: int, count: int, kind: str) -> None:
+    states: States = {"random": Random(700, 3), "sobol": Sobol(700, 3), "grid": Grid((10, 7, 10))}[kind]
+    assert states.count(LIMITS) == 700
+    whole = states.rows(0, 700, LIMITS)
+    assert whole.flags.c_contiguous and whole.shape == (700, 3)
+    assert (states.rows(first, count, LIMITS)[: 700 - first] == whole[first : first + count]).all()
+    assert (whole[:, 0] >= -1).all() and (whole[:, 0] <= 2).all() and (np.abs(whole[:, 1]) <= np.pi).all()
+
+
+def test_a_grid_has_every_combination_and_a_single_value_is_the_middle() -> None:
+    rows = Grid((3, 1, 2)).rows(0, 6, LIMITS)
+    assert rows.tolist() == [[a, 0.0, c] for a in (-1.0, 0.5, 2.0) for c in (0.0, 0.5)]
+    with pytest.raises(er.ArgumentError, match="one number for each joint"):
+        Grid((3, 3)).count(LIMITS)
+
+
+def test_the_answers_are_those_of_the_checker(tmp_path: Path) -> None:
+    asked = task(tmp_path / "out", Random(1100, 5))
+    result = sweep.run(asked)
+    found = columns(result)
+    checker = asked.checker()
+    q = Random(1100, 5).rows(0, 1100, checker.limits)
+    expected = checker.witness(q)
+    assert (found["index"] == np.arange(1100)).all()
+    assert (found["collides"] == checker.collides(q)).all() and result.colliding == found["collides"].sum() > 50
+    assert (found["distance_m"] <= expected.distance_m).all()
+    assert np.allclose(found["distance_m"], expected.distance_m, rtol=2e-7, atol=0)
+    assert found["a"].tolist() == expected.a and found["b"].tolist() == expected.b
+    # The same from the manifest, and again without work; a collision alone has the same states.
+    before = {file: file.stat().st_mtime_ns for file in result.folder.glob("part-*")}
+    assert sweep.Result.load(result.folder) == sweep.run(asked) == result
+    assert {file: file.stat().st_mtime_ns for file in result.folder.glob("part-*")} == before
+    alone = sweep.run(replace(asked, ask="collision", out=tmp_path / "collision", shard_rows=333))
+    assert (columns(alone)["collides"] == found["collides"]).all() and set(columns(alone)) == {"index", "collides"}
+
+
+def test_a_table_of_states_and_a_cell(tmp_path: Path, exchange: Path) -> None:
+    checker = er.Checker(er.Cell.load(exchange))
+    q = np.random.default_rng(2).uniform(-2, 2, (450, len(checker.joints)))
+    np.save(tmp_path / "q.npy", q)
+    asked = sweep.Task(exchange, Table(tmp_path / "q.npy"), tmp_path / "out", shard_rows=200)
+    assert (columns(sweep.run(asked))["collides"] == checker.collides(q)).all()
+    np.save(tmp_path / "q.npy", q[:, :2])
+    with pytest.raises(er.ArrayError, match="2 columns"):
+        sweep.run(asked, out=tmp_path / "other")
+
+
+def started(file: Path, *words: str) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "elbowroom.sweep", str(file), *words]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+
+
+def wait_for_parts(folder: Path, count: int, longest_s: float = 60.0) -> None:
+    begun = time.monotonic()
+    while len(list(folder.glob("part-*.parquet"))) < count:
+        assert time.monotonic() - begun < longest_s, "no parts"
+        time.sleep(0.005)
+
+
+def written(folder: Path, rows: int) -> Path:
+    file = folder / "big.toml"
+    file.write_text(f'robot = "{RX60B}"\nshard_rows = 300\n[states]\nkind = "sobol"\nrows = {rows}\n')
+    return file
+
+
+def test_a_driver_that_was_killed_goes_on(tmp_path: Path) -> None:
+    file = written(tmp_path, 24_000)
+    expected = sweep.run(sweep.Task.load(file), out=tmp_path / "whole")
+    out = tmp_path / "big-sweep"
+    for parts in (3, 8):
+        process = started(file)
+        wait_for_parts(out, parts)
+        process.kill()
+        process.wait()
+    (out / "part-000079.parquet.123.tmp").write_bytes(b"half a part")
+    finished = {file: file.stat().st_mtime_ns for file in out.glob("part-*.parquet")}
+    assert 8 <= len(finished) < 80 and not (out / "manifest.json").exists()
+    assert sweep.run(sweep.Task.load(file)).sha256 == expected.sha256
+    assert all(file.stat().st_mtime_ns == then for file, then in finished.items()), "nothing is computed twice"
+    assert len(list(out.glob("part-*"))) == 80
+
+
+def test_two_drivers_do_not_share_a_folder(tmp_path: Path) -> None:
+    asked = task(tmp_path, Random(300))
+    with driver._alone(tmp_path), pytest.raises(er.Error, match="another sweep is writing there"):
+        sweep.run(asked)
+    assert sweep.run(asked).rows == 300
+
+
+def test_another_task_is_refused_and_a_damaged_part_too(tmp_path: Path) -> None:
+    asked = task(tmp_path, Random(500))
+    sweep.run(asked)
+    with pytest.raises(er.Error, match="part of another sweep"):
+        sweep.run(replace(asked, states=Random(500, 2)))
+    (tmp_path / "part-000001.parquet").write_bytes(b"no part")
+    with pytest.raises(er.Error, match="part-000001.parquet: is not a part"):
+        sweep.run(asked)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "the model is missing"),
+        ('cell = "a"\nrobot = "b"', "there are two"),
+        ('cell = "a"', r"write: \[states\]"),
+        ('cell = "a"\nshard_row = 1\n[states]\nkind = "random"', "`shard_row` is no key of a task"),
+        ('cell = "a"\n[states]\nkind = "rand"', "one of random, sobol, grid, table"),
+        ('cell = "a"\n[states]\nkind = "random"\nrows = -1', "`rows` is -1"),
+        ('cell = "a"\n[states]\nkind = "random"\nrow = 1', "`row` is no key"),
+        ('cell = "a"\n[states]\nkind = "grid"\nsteps = [1, 0]', "one whole number for each joint"),
+        ('cell = "a"\nask = "time"\n[states]\nkind = "random"\nrows = 1', "`ask` is 'time'"),
+        ('cell = "a"\nshard_rows = 0\n[states]\nkind = "random"\nrows = 1', "`shard_rows` is 0"),
+        ("cell = ", "TOML"),
+    ],
+)
+def test_wrong_tasks_are_told_what_to_write(tmp_path: Path, text: str, message: str) -> None:
+    file = tmp_path / "task.toml"
+    file.write_text(text)
+    with pytest.raises(er.FileError, match=message) as told:
+        sweep.Task.load(file)
+    assert str(told.value).startswith(f"{file}: ") and told.value.hint
+
+
+def test_the_command_hands_over(command: Path, tmp_path: Path) -> None:
+    file = written(tmp_path, 700)
+    env = os.environ | {"ELBOWROOM_PYTHON": sys.executable}
+    run = subprocess.run([command, "sweep", file, "--out", tmp_path / "out"], env=env, capture_output=True, text=True)
+    assert run.returncode == 0 and "700 states" in run.stdout, run.stderr
+    assert sweep.Result.load(tmp_path / "out").sha256 in run.stdout
+    file.write_text("cell = 1\n[states]")
+    run = subprocess.run([command, "sweep", file], env=env, capture_output=True, text=True)
+    assert run.returncode == 2 and "a text in quotation marks" in run.stderr, run.stderr
+    nobody = env | {"ELBOWROOM_PYTHON": str(tmp_path / "python")}
+    run = subprocess.run([command, "sweep", file], env=nobody, capture_output=True, text=True)
+    assert run.returncode == 2 and "pip install 'elbowroom[sweep]'" in run.stderr, run.stderr
+
+
+@pytest.fixture
+def cluster() -> Iterator[Any]:
+    """Three machines of a processor each, simulated on this one."""
+    cluster_utils = pytest.importorskip("ray.cluster_utils", reason="skipped: no Ray")
+    ray = sys.modules["ray"]
+    found = cluster_utils.Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "object_store_memory": 2 * 10**8})
+    ray.init(address=found.address, log_to_driver=False, configure_logging=False)
+    yield found
+    ray.shutdown()
+    found.shutdown()
+
+
+def kill_a_worker() -> bool:
+    """Kill a process that computes a shard."""
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            name = (process / "cmdline").read_bytes()
+        except OSError:
+            continue
+        if name.startswith(b"ray::compute"):
+            os.kill(int(process.name), signal.SIGKILL)
+            return True
+    return False
+
+
+def test_workers_and_machines_that_die_lose_nothing(tmp_path: Path, cluster: Any) -> None:
+    machines = [cluster.add_node(num_cpus=1, object_store_memory=2 * 10**8) for _ in range(2)]
+    asked = task(tmp_path / "ray", Sobol(20_000), shard_rows=500)
+    expected = sweep.run(asked, out=tmp_path / "local")
+    killed = 0
+
+    def kill() -> None:
+        nonlocal killed
+        for parts in (2, 8, 14):
+            wait_for_parts(asked.out, parts)
+            killed += kill_a_worker()
+        cluster.remove_node(machines[0], allow_graceful=False)
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    result = sweep.run(asked, executor="ray")
+    killer.join()
+    assert result.sha256 == expected.sha256 and result.rows == 20_000 and killed > 0
+    assert result.colliding == expected.colliding
