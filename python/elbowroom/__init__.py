@@ -10,7 +10,7 @@ state. Lengths are metres, times seconds. For a cell the robots stand side by si
 
 from elbowroom._elbowroom import Cell, Checker, Robot, __version__, plan
 from elbowroom.errors import ArgumentError, ArrayError, Error, FileError
-from elbowroom.results import JointMap, Path, Run, Witness
+from elbowroom.results import JointMap, Path, Run, Trace, Witness
 
 __all__ = [
     "ArgumentError",
@@ -23,6 +23,7 @@ __all__ = [
     "Path",
     "Robot",
     "Run",
+    "Trace",
     "Witness",
     "__version__",
     "plan",

@@ -5,9 +5,9 @@ import numpy as np
 import numpy.typing as npt
 
 from elbowroom.poses import PoseLike
-from elbowroom.results import JointMap, Path, Run, Witness
+from elbowroom.results import JointMap, Path, Run, Trace, Witness
 
-__all__ = ["Cell", "Checker", "Robot", "__version__", "plan"]
+__all__ = ["Cell", "Checker", "Robot", "RunRecord", "__version__", "plan"]
 
 _States = npt.NDArray[np.float64]
 
@@ -76,6 +76,13 @@ class Checker:
     def within(self, q: _States, tolerance_m: float) -> npt.NDArray[np.bool_]: ...
     def witness(self, q: _States) -> Witness: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class RunRecord:
+    @property
+    def robots(self) -> list[str]: ...
+    def page(self) -> str: ...
+    def trace(self, robot: str) -> Trace: ...
 
 def plan(
     cell: Cell,

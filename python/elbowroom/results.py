@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+import html
+from dataclasses import dataclass, field
+from pathlib import Path as _File
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["JointMap", "Path", "Run", "Witness"]
+from elbowroom.errors import ArgumentError
+
+if TYPE_CHECKING:
+    from elbowroom._elbowroom import RunRecord
+
+__all__ = ["JointMap", "Path", "Run", "Trace", "Witness"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,8 +83,37 @@ class Path:
 
 
 @dataclass(frozen=True, eq=False)
+class Trace:
+    """Every tick of a robot in a run.
+
+    Attributes
+    ----------
+    robot, joints
+        The robot and the names of its joints, in the order of the values.
+    times_s
+        `(N,)`: seconds since the run began.
+    q
+        `(N, dof)`, rad or m.
+    tcp_m
+        `(N, 3)`: the tool centre point in the world.
+    speed_override
+        `(N,)`: 0 to 1.
+    distance_m
+        `(N,)`: the distance from the governing region; NaN without one.
+    """
+
+    robot: str
+    joints: list[str]
+    times_s: npt.NDArray[np.float64]
+    q: npt.NDArray[np.float64]
+    tcp_m: npt.NDArray[np.float64]
+    speed_override: npt.NDArray[np.float64]
+    distance_m: npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
 class Run:
-    """A simulated run of the programs of a cell.
+    """A simulated run of the programs of a cell. In a notebook it shows its report.
 
     Attributes
     ----------
@@ -92,6 +128,25 @@ class Run:
     summary: dict[str, Any]
     has_violation: bool
     notes: list[str]
+    _record: RunRecord = field(repr=False)
+
+    def report(self, file: str | _File | None = None) -> str:
+        """Return the report, an HTML page with the scene in 3-D that needs no network, and write it to a file."""
+        page = self._record.page()
+        if file is not None:
+            _File(file).write_text(page, encoding="utf-8")
+        return page
+
+    def trace(self, robot: str | None = None) -> Trace:
+        """Return every tick of a robot; its name is optional if there is only one."""
+        robots = self._record.robots
+        if robot is None and len(robots) != 1:
+            raise ArgumentError(f"the cell has {len(robots)} robots\n  write: one of {', '.join(robots)}")
+        return self._record.trace(robots[0] if robot is None else robot)
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.report(), quote=True)
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 720px; border: 0"></iframe>'
 
 
 @dataclass(frozen=True, eq=False)

@@ -108,3 +108,22 @@ def test_a_cell_pickles_and_a_broken_one_teaches(exchange: Path, tmp_path: Path)
     with pytest.raises(er.FileError) as found:
         er.Cell.load(broken)
     assert found.value.line == 10 and "radius" in found.value.message
+
+
+def test_a_run_has_the_trace_and_the_report_of_the_command(command: Path, exchange: Path, tmp_path: Path) -> None:
+    run = er.Cell.load(exchange).run()
+    subprocess.run([command, "run", exchange, "--out", tmp_path], capture_output=True, check=True)
+    rows = [line.split(",") for line in (tmp_path / "trace.csv").read_text().splitlines()]
+    for robot in er.Cell.load(exchange).robots:
+        trace = run.trace(robot)
+        expected = [row for row in rows[1:] if row[rows[0].index("robot")] == robot]
+        assert len(expected) == len(trace.times_s) == len(trace.q) > 100 and trace.q.shape[1] == len(trace.joints)
+        column = rows[0].index("override")
+        assert np.abs(trace.speed_override - [float(row[column]) for row in expected]).max() < 1e-6
+    page = run.report(tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text() == page and page.startswith("<!DOCTYPE html>")
+    assert "<iframe" in run._repr_html_() and 'srcdoc="&lt;!DOCTYPE' in run._repr_html_()
+    with pytest.raises(er.ArgumentError, match="the cell has 2 robots"):
+        run.trace()
+    with pytest.raises(er.ArgumentError, match='no robot is called "middle"'):
+        run.trace("middle")

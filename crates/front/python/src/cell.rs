@@ -6,11 +6,12 @@ use std::sync::Arc;
 use elbowroom::cell::Cell as Model;
 use elbowroom::cspace::GridAxis;
 use elbowroom::query::map::{self, CellMap, MapModel, MapProgress, MapRequest};
-use elbowroom::sim::{RunOptions, RunOutcome, RunSummary, simulate};
+use elbowroom::sim::RunOptions;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::error::Fault;
+use crate::run::run;
 
 /// A cell file and what it describes: robots, objects, regions, programs.
 ///
@@ -24,13 +25,6 @@ use crate::error::Fault;
 pub struct Cell {
     pub(crate) model: Arc<Model>,
     path: PathBuf,
-}
-
-/// The summary of a run as JSON.
-fn run(cell: &Model, options: &RunOptions) -> Result<(String, RunOutcome), Fault> {
-    let outcome = simulate(cell, options)?;
-    let summary = serde_json::to_string(&RunSummary::from(&outcome.recording));
-    Ok((summary.map_err(|e| Fault::Argument(format!("the summary of the run: {e}")))?, outcome))
 }
 
 #[pymethods]
@@ -96,10 +90,7 @@ impl Cell {
             Fault::Argument(format!("`repeat` is {repeat}\n  write: how often the programs run, 1 or more"))
         })?;
         let options = RunOptions { apply_override: monitor, avoidance, repeat, ..RunOptions::default() };
-        let (summary, outcome) = py.detach(|| run(&self.model, &options))?;
-        let summary = py.import("json")?.getattr("loads")?.call1((summary,))?;
-        let notes: Vec<String> = outcome.notes.iter().map(ToString::to_string).collect();
-        py.import("elbowroom.results")?.getattr("Run")?.call1((summary, outcome.has_violation(), notes))
+        run(py, &self.model, &options)
     }
 
     /// Compute the cells of joint space that objects block.

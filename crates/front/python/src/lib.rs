@@ -14,6 +14,7 @@ mod error;
 mod paths;
 mod robot;
 mod rows;
+mod run;
 
 use pyo3::prelude::*;
 
@@ -24,5 +25,6 @@ fn _elbowroom(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<robot::Robot>()?;
     module.add_class::<cell::Cell>()?;
     module.add_class::<checker::Checker>()?;
+    module.add_class::<run::RunRecord>()?;
     module.add_function(wrap_pyfunction!(paths::plan, module)?)
 }

@@ -1,0 +1,68 @@
+//! What a run recorded: traces of the robots, and the report.
+
+use std::sync::Arc;
+
+use elbowroom::cell::Cell as Model;
+use elbowroom::report::{ReportScene, write_html};
+use elbowroom::sim::{Recording, RunOptions, RunSummary, Sample, simulate};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::error::Fault;
+use crate::rows::shaped;
+
+/// What a run recorded, tick by tick; `elbowroom.results.Run` has it.
+#[pyclass(module = "elbowroom", frozen)]
+pub struct RunRecord {
+    model: Arc<Model>,
+    recording: Recording,
+}
+
+/// Runs the programs of a cell, and returns the `Run` of the package.
+pub fn run<'py>(py: Python<'py>, model: &Arc<Model>, options: &RunOptions) -> PyResult<Bound<'py, PyAny>> {
+    let outcome = py.detach(|| simulate(model, options).map_err(Fault::from))?;
+    let summary = serde_json::to_string(&RunSummary::from(&outcome.recording));
+    let summary = summary.map_err(|e| Fault::Argument(format!("the summary of the run: {e}")))?;
+    let summary = py.import("json")?.getattr("loads")?.call1((summary,))?;
+    let notes: Vec<String> = outcome.notes.iter().map(ToString::to_string).collect();
+    let violated = outcome.has_violation();
+    let record = RunRecord { model: model.clone(), recording: outcome.recording };
+    py.import("elbowroom.results")?.getattr("Run")?.call1((summary, violated, notes, record))
+}
+
+#[pymethods]
+impl RunRecord {
+    /// The names of the robots.
+    #[getter]
+    fn robots(&self) -> Vec<&str> {
+        self.recording.robots.iter().map(|robot| robot.name.as_str()).collect()
+    }
+
+    /// The report as an HTML page that needs no network.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let write = || {
+            let label = if self.recording.monitored { "monitor on" } else { "monitor off" };
+            let mut page = Vec::new();
+            write_html(&mut page, &ReportScene::of_cell(&self.model), &[(label, &self.recording)])?;
+            String::from_utf8(page).map_err(std::io::Error::other)
+        };
+        py.detach(write).map_err(|e| Fault::Argument(format!("the report: {e}")).into())
+    }
+
+    /// Every tick of a robot, as an `elbowroom.results.Trace`.
+    fn trace<'py>(&self, py: Python<'py>, robot: &str) -> PyResult<Bound<'py, PyAny>> {
+        let track = self.recording.robots.iter().find(|track| track.name == robot).ok_or_else(|| {
+            Fault::Argument(format!("no robot is called \"{robot}\"\n  write: one of {}", self.robots().join(", ")))
+        })?;
+        let column = |value: &dyn Fn(&Sample) -> f64| PyArray1::from_vec(py, track.samples.iter().map(value).collect());
+        let count = track.samples.len();
+        let q: Vec<f64> = track.samples.iter().flat_map(|sample| sample.q.iter().copied()).collect();
+        let tcp: Vec<f64> = track.samples.iter().flat_map(|sample| sample.tcp.to_array()).collect();
+        let q = shaped(&PyArray1::from_vec(py, q), [count, track.joints.len()])?;
+        let tcp = shaped(&PyArray1::from_vec(py, tcp), [count, 3])?;
+        let (times, factors) = (column(&|s| s.t_s), column(&|s| s.speed_override));
+        let distances = column(&|s| s.distance_m.unwrap_or(f64::NAN));
+        let make = py.import("elbowroom.results")?.getattr("Trace")?;
+        make.call1((robot, track.joints.clone(), times, q, tcp, factors, distances))
+    }
+}
