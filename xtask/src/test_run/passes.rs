@@ -15,6 +15,9 @@ use xtask::{call, shell};
 use super::programs::Program;
 use super::units::Unit;
 
+/// The crate below `crates` whose tests read the folder `python`.
+const READS_PACKAGE: &str = "front/python";
+
 /// A unit that passed: the hash of its program and files, and the number of its tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Pass {
@@ -41,9 +44,11 @@ impl Passes {
     fn of_file(file: PathBuf, root: &Path, programs: &[Program], env: &[(&str, &str)]) -> Self {
         let text = std::fs::read_to_string(&file).unwrap_or_default();
         let _ = std::fs::remove_file(&file);
-        let surroundings = surroundings(root, env);
+        let [without_package, with_package] = [false, true].map(|of_package| surroundings(root, env, of_package));
         let crates = root.join("crates");
         let stamp = |program: &Program| {
+            let reads_package = program.folder.starts_with(crates.join(READS_PACKAGE));
+            let surroundings = if reads_package { with_package } else { without_package };
             // Programs outside `crates` read the sources.
             let surroundings = surroundings.filter(|_| program.folder.starts_with(&crates))?;
             let mut hasher = DefaultHasher::new();
@@ -87,9 +92,9 @@ fn entry(line: &str) -> Option<(String, Pass)> {
     Some((name.to_owned(), Pass { stamp: u64::from_str_radix(stamp, 16).ok()?, tests: tests.parse().ok()? }))
 }
 
-/// Hashes what tests may read besides their program: settings, files of the repository, the real data. `None` without
-/// `git`.
-fn surroundings(root: &Path, env: &[(&str, &str)]) -> Option<u64> {
+/// Hashes what tests may read besides their program: settings, files of the repository (those of the Python package for
+/// its tests only), the real data. `None` without `git`.
+fn surroundings(root: &Path, env: &[(&str, &str)], of_package: bool) -> Option<u64> {
     let mut hasher = DefaultHasher::new();
     env.hash(&mut hasher);
     let is_ours = |name: &OsStr| name.to_str().is_some_and(|name| name.starts_with("ELBOWROOM_"));
@@ -99,7 +104,7 @@ fn surroundings(root: &Path, env: &[(&str, &str)]) -> Option<u64> {
     let files = shell::output(root, "git", &["ls-files", "-z", "--cached", "--others", "--exclude-standard"]).ok()?;
     let is_read = |file: &&str| {
         let ending = Path::new(file).extension().and_then(OsStr::to_str);
-        !matches!(ending, Some("rs" | "md"))
+        !matches!(ending, Some("rs" | "md")) && (of_package || !file.starts_with("python/"))
     };
     files.split_terminator('\0').filter(is_read).for_each(|file| look(&root.join(file), &mut hasher));
     look_into(&call::data_folder(root, None), &mut hasher);
@@ -183,6 +188,21 @@ mod tests {
         // An interrupted run keeps nothing.
         drop(Passes::of_file(root.join("target/passes"), root, &here, &[]));
         assert_eq!(passed_with(&[]), None);
+    }
+
+    #[test]
+    fn files_of_the_package_concern_its_own_tests() {
+        let root = repository();
+        let (root, executable) = (root.path(), root.path().join("target/main"));
+        std::fs::write(&executable, "one").unwrap();
+        std::fs::create_dir(root.join("python")).unwrap();
+        let folders = ["crates/a", "crates/front/python"].map(|folder| root.join(folder));
+        let programs = folders.map(|folder| program(&executable, &folder.to_string_lossy()));
+        let stamps = || Passes::of_file(root.join("target/passes"), root, &programs, &[]).stamps;
+        let before = stamps();
+        std::fs::write(root.join("python/package.py"), "text").unwrap();
+        let after = stamps();
+        assert!(before[0].is_some() && before[0] == after[0] && before[1] != after[1], "{before:?} {after:?}");
     }
 
     #[test]
