@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -23,6 +24,7 @@ import elbowroom as er
 from conftest import ROOT
 from elbowroom import sweep
 from elbowroom.sweep import driver
+from elbowroom.sweep.shard import Job, compute
 from elbowroom.sweep.states import Grid, Random, Sobol, States, Table
 
 RX60B = ROOT / "examples/models/rx60b/rx60b.urdf"
@@ -129,14 +131,74 @@ def test_two_drivers_do_not_share_a_folder(tmp_path: Path) -> None:
     assert sweep.run(asked).rows == 300
 
 
-def test_another_task_is_refused_and_a_damaged_part_too(tmp_path: Path) -> None:
+def test_another_task_is_refused_and_a_damaged_or_misplaced_part_too(tmp_path: Path) -> None:
     asked = task(tmp_path, Random(500))
     sweep.run(asked)
-    with pytest.raises(er.Error, match="part of another sweep"):
+    with pytest.raises(er.Error, match="not a part of this sweep"):
         sweep.run(replace(asked, states=Random(500, 2)))
-    (tmp_path / "part-000001.parquet").write_bytes(b"no part")
+    # What it says is true of finished sweeps only.
+    with pytest.raises(er.FileError, match="a finished sweep"):
+        sweep.Result.load(tmp_path)
+    first, second, copy = (tmp_path / f"part-{name}.parquet" for name in ("000000", "000001", "000000-copy"))
+    content = second.read_bytes()
+    for file in (second, copy):
+        file.write_bytes(first.read_bytes())
+        with pytest.raises(er.Error, match=f"{file.name}: is not a part of this sweep"):
+            sweep.run(asked)
+        file.unlink()
+    second.write_bytes(content[:-9])
     with pytest.raises(er.Error, match="part-000001.parquet: is not a part"):
         sweep.run(asked)
+    second.unlink()
+    assert sweep.run(asked).rows == 500
+
+
+def test_a_model_that_has_changed_is_another(tmp_path: Path) -> None:
+    (tmp_path / "arm.urdf").write_text(RX60B.read_text().replace("meshes/", f"{RX60B.parent}/meshes/"))
+    asked = replace(task(tmp_path / "out", Random(300)), model=tmp_path / "arm.urdf")
+    sweep.run(asked)
+    moved = re.sub(r'xyz="0 0 ([0-9.]+)"', lambda found: f'xyz="0.001 0 {found[1]}"', (tmp_path / "arm.urdf").read_text())
+    (tmp_path / "arm.urdf").write_text(moved)
+    with pytest.raises(er.Error, match="not a part of this sweep"):
+        sweep.run(asked)
+    # A worker with other files refuses.
+    job = Job(asked, "another", "fingerprint of the driver", tmp_path / "out", 300)
+    with pytest.raises(er.Error, match="another model than that of the driver"):
+        compute(job, 0)
+
+
+def test_folders_and_files_that_cannot_be_used_are_told(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    for out in (tmp_path / "file", tmp_path / "file" / "below"):
+        with pytest.raises(er.Error, match="cannot be written to"):
+            sweep.run(task(out, Random(10)))
+    with pytest.raises(er.FileError, match="no.urdf"):
+        sweep.run(replace(task(tmp_path / "out", Random(10)), model=tmp_path / "no.urdf"))
+    q = np.zeros((300, 6))
+    q[233, 2] = np.nan
+    np.save(tmp_path / "q.npy", q)
+    with pytest.raises(er.ArrayError, match="q.npy: row 233"):
+        sweep.run(task(tmp_path / "nan", Table(tmp_path / "q.npy")))
+    np.savez(tmp_path / "q.npz", q=q)
+    (tmp_path / "empty.npy").write_bytes(b"")
+    for name in ("q.npz", "empty.npy", "none.npy"):
+        with pytest.raises(er.FileError, match=f"{name}: cannot be read"):
+            sweep.run(task(tmp_path / "table", Table(tmp_path / name)))
+    for states in (lambda: Random(-5), lambda: Sobol(3, 2**70)):
+        with pytest.raises(er.ArgumentError, match="whole numbers"):
+            states()
+    with pytest.raises(er.ArgumentError, match="fewer values"):
+        sweep.run(task(tmp_path / "grid", Grid((2**30,) * 6)))
+
+
+def test_an_interrupted_command_says_how_it_goes_on(tmp_path: Path) -> None:
+    file = written(tmp_path, 400_000)
+    command = [sys.executable, "-m", "elbowroom.sweep", str(file)]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    wait_for_parts(tmp_path / "big-sweep", 1)
+    process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=30)[1]
+    assert process.returncode == 130 and "goes on where it was" in told and "Traceback" not in told, told
 
 
 @pytest.mark.parametrize(
@@ -149,6 +211,9 @@ def test_another_task_is_refused_and_a_damaged_part_too(tmp_path: Path) -> None:
         ('cell = "a"\n[states]\nkind = "rand"', "one of random, sobol, grid, table"),
         ('cell = "a"\n[states]\nkind = "random"\nrows = -1', "`rows` is -1"),
         ('cell = "a"\n[states]\nkind = "random"\nrow = 1', "`row` is no key"),
+        ('cell = "a"\nsrdf = "b"\n[states]\nkind = "random"\nrows = 1', "`srdf` belongs to a robot"),
+        ('cell = "a"\n[states]\nkind = "table"', "`file` is missing"),
+        ('cell = "a"\n[states]\nkind = "grid"\nsteps = [true]', "one whole number for each joint"),
         ('cell = "a"\n[states]\nkind = "grid"\nsteps = [1, 0]', "one whole number for each joint"),
         ('cell = "a"\nask = "time"\n[states]\nkind = "random"\nrows = 1', "`ask` is 'time'"),
         ('cell = "a"\nshard_rows = 0\n[states]\nkind = "random"\nrows = 1', "`shard_rows` is 0"),

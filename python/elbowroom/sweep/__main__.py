@@ -22,6 +22,9 @@ def main() -> int:
     except Error as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("\nstopped: the same command goes on where it was", file=sys.stderr)
+        return 130
     print(result)
     return 0
 

@@ -11,7 +11,8 @@ from elbowroom.errors import ArgumentError, Error
 from elbowroom.sweep import executors, parts
 from elbowroom.sweep.parts import Part
 from elbowroom.sweep.progress import Progress
-from elbowroom.sweep.result import Result, finish
+from elbowroom.sweep.result import MANIFEST, Result, finish
+from elbowroom.sweep.shard import Job
 from elbowroom.sweep.task import Task, digest
 
 
@@ -45,43 +46,50 @@ def run(
     if chosen not in ("local", "ray"):
         raise ArgumentError(f"`executor` is {chosen!r}\n  write: local or ray")
     folder = (Path(out) if out is not None else task.out).resolve()
-    folder.mkdir(parents=True, exist_ok=True)
-    identity = task.identity()
-    name = digest(identity)
-    total = task.states.count(task.checker().limits)
-    shards = -(-total // task.shard_rows)
+    checker = task.checker()
+    identity = task.identity(checker)
+    total = task.states.count(checker.limits)
+    job = Job(task, digest(identity), identity["fingerprint"], folder, total)
     with _alone(folder):
-        found = _finished(folder, name, shards)
+        # What it says is true of finished sweeps only.
+        (folder / MANIFEST).unlink(missing_ok=True)
+        found = _finished(job)
         line = Progress(progress, total, sum(part.rows for part in found.values()))
-        still_open = (shard for shard in range(shards) if shard not in found)
+        still_open = (shard for shard in range(-(-total // task.shard_rows)) if shard not in found)
         compute = executors.ray if chosen == "ray" else executors.local
-        for part in compute(task, name, folder, still_open, total):
+        for part in compute(job, still_open):
             found[part.first // task.shard_rows] = part
             line.add(part.rows)
         line.end()
         return finish(folder, identity, list(found.values()))
 
 
-def _finished(folder: Path, name: str, shards: int) -> dict[int, Part]:
-    """Read the parts of an interrupted run, and remove what it did not finish."""
-    for unfinished in folder.glob("part-*.tmp"):
+def _finished(job: Job) -> dict[int, Part]:
+    """Read the footers of an interrupted run, and remove what it did not finish."""
+    for unfinished in job.folder.glob("part-*.tmp"):
         unfinished.unlink(missing_ok=True)
     found = {}
-    for file in folder.glob("part-*.parquet"):
+    for file in job.folder.glob("part-*.parquet"):
         part = parts.read(file)
-        shard = int(file.stem.removeprefix("part-"))
-        if part is None or part.task != name or shard >= shards:
-            raise Error(f"{file}: is a part of another sweep\n  write: another folder, or remove its parts")
+        shard = part.first // job.task.shard_rows
+        belongs = part.task == job.digest and file == parts.path(job.folder, shard)
+        if not belongs or (part.first, part.rows) != job.shard_of(shard):
+            raise Error(f"{file}: is not a part of this sweep\n  write: another folder, or remove the file")
         found[shard] = part
     return found
 
 
 @contextmanager
 def _alone(folder: Path) -> Iterator[None]:
-    """Keep other drivers out of the folder until this one ends, in whatever way."""
-    with (folder / "driver.lock").open("w") as lock:
+    """Make the folder, and keep other drivers out of it until this one ends, in whatever way."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        lock = (folder / "driver.lock").open("w")
+    except OSError as error:
+        raise Error(f"{folder}: cannot be written to: {error}\n  write: another folder") from error
+    with lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
+        except BlockingIOError as error:
             raise Error(f"{folder}: another sweep is writing there\n  write: another folder") from error
         yield

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import uuid
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -79,7 +80,7 @@ def write(file: Path, task: str, first: int, answers: Answers) -> Part:
     table = pa.table(columns)
     table = table.replace_schema_metadata({_KEY: json.dumps(asdict(part)).encode()})
     # Two workers may compute one shard, if a cluster takes one of them for dead: each has a name of its own.
-    unfinished = file.with_name(f"{file.name}.{os.getpid()}.tmp")
+    unfinished = file.with_name(f"{file.name}.{uuid.uuid4().hex}.tmp")
     encodings = {"index": "DELTA_BINARY_PACKED"}
     dictionaries = [name for name in ("a", "b") if name in columns]
     with unfinished.open("wb") as out:
@@ -90,16 +91,14 @@ def write(file: Path, task: str, first: int, answers: Answers) -> Part:
     return part
 
 
-def read(file: Path) -> Part | None:
-    """Read the footer of a part; `None` if it does not exist.
+def read(file: Path) -> Part:
+    """Read the footer of a part. Its columns are not read again.
 
     Raises
     ------
     Error
         If the file is not a part.
     """
-    if not file.exists():
-        return None
     pq = imported("pyarrow.parquet", "pyarrow")
     try:
         footer = pq.ParquetFile(file)

@@ -1,4 +1,4 @@
-"""What a sweep came to."""
+"""The result of a sweep."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MANIFEST = "manifest.json"
 
 @dataclass(frozen=True)
 class Result:
-    """What a sweep came to.
+    """The result of a sweep.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class Result:
     least_distance_m
         The least distance of all states; `None` if it was not asked.
     sha256
-        A hash of all answers, in hex: the same wherever and in whatever order the shards were computed.
+        A hash of all answers, in hex: the same wherever and in whatever order shards of this size were computed.
     """
 
     folder: Path
@@ -49,14 +49,14 @@ class Result:
         try:
             table = json.loads(file.read_text(encoding="utf-8"))
             return Result(file.parent, *(table[key] for key in ("rows", "colliding", "least_distance_m", "sha256")))
-        except (OSError, ValueError, KeyError) as error:
+        except (OSError, ValueError, KeyError, TypeError) as error:
             hint = "the folder of a finished sweep"
             raise FileError(f"{file}: {error}\n  write: {hint}", str(file), None, str(error), hint) from error
 
     def batches(self) -> Iterator[dict[str, npt.NDArray[Any]]]:
         """Return the columns of one part after another, as NumPy arrays."""
         pq = imported("pyarrow.parquet", "pyarrow")
-        for file in sorted(self.folder.glob("part-*.parquet")):
+        for file in sorted(self.folder.glob("part-*.parquet"), key=lambda file: (len(file.name), file.name)):
             table = pq.read_table(file)
             yield {name: np.asarray(table[name].to_numpy()) for name in table.column_names}
 

@@ -2,31 +2,63 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from elbowroom import _elbowroom
+from elbowroom.errors import Error
 from elbowroom.sweep import parts
 from elbowroom.sweep.parts import Answers, Part
-from elbowroom.sweep.task import Task
+from elbowroom.sweep.task import Task, fingerprint
 
 # The models of this process, by the digest of their task: a worker computes many shards of one.
 _CHECKERS: dict[tuple[str, int | None], _elbowroom.Checker] = {}
 
 
-def compute(task: Task, digest: str, out: Path, shard: int, total: int, threads: int | None = None) -> Part:
+@dataclass(frozen=True)
+class Job:
+    """What all shards of a sweep share.
+
+    Attributes
+    ----------
+    task, digest
+        The task, and the digest of its identity.
+    fingerprint
+        That of the model at the driver: a worker whose files differ must not answer.
+    folder, total
+        The folder of the parts, and the number of states.
+    """
+
+    task: Task
+    digest: str
+    fingerprint: str
+    folder: Path
+    total: int
+
+    def shard_of(self, shard: int) -> tuple[int, int]:
+        """Return the number of the first state of a shard, and of its states."""
+        first = shard * self.task.shard_rows
+        return first, min(self.task.shard_rows, self.total - first)
+
+
+def compute(job: Job, shard: int, threads: int | None = None) -> Part:
     """Answer a shard, write its part, and return its footer."""
-    key = (digest, threads)
+    key = (job.digest, threads)
     if key not in _CHECKERS:
         # One at a time: a worker of a cluster may see many tasks.
         _CHECKERS.clear()
-        _CHECKERS[key] = task.checker(threads)
+        checker = job.task.checker(threads)
+        if fingerprint(checker) != job.fingerprint:
+            text = f"{job.task.model}: another model than that of the driver\n  write: the same files on all machines"
+            raise Error(text)
+        _CHECKERS[key] = checker
     checker = _CHECKERS[key]
-    first = shard * task.shard_rows
-    q = task.states.rows(first, min(task.shard_rows, total - first), checker.limits)
-    return parts.write(parts.path(out, shard), digest, first, _answers(task, checker, q))
+    first, count = job.shard_of(shard)
+    q = job.task.states.rows(first, count, checker.limits)
+    return parts.write(parts.path(job.folder, shard), job.digest, first, _answers(job.task, checker, q))
 
 
 def _answers(task: Task, checker: _elbowroom.Checker, q: npt.NDArray[np.float64]) -> Answers:

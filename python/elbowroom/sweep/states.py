@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -43,12 +44,21 @@ class States(ABC):
         return []
 
 
+def _checked(number: int, seed: int) -> None:
+    if not (0 <= number < 2**63 and 0 <= seed < 2**63):
+        raise ArgumentError(f"{number} states with the seed {seed}\n  write: whole numbers of 0 or more")
+
+
 @dataclass(frozen=True)
 class Random(States):
     """Uniform between the limits: number `i` is the same in every sweep with this seed."""
 
     number: int
     seed: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that are not possible."""
+        _checked(self.number, self.seed)
 
     def count(self, limits: Values) -> int:
         """Return the number of states."""
@@ -72,6 +82,10 @@ class Sobol(States):
 
     number: int
     seed: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that are not possible."""
+        _checked(self.number, self.seed)
 
     def count(self, limits: Values) -> int:
         """Return the number of states."""
@@ -105,7 +119,10 @@ class Grid(States):
         if len(self.steps) != len(limits):
             text = f"`steps` has {len(self.steps)} numbers, the model {len(limits)} joints\n  write: one number for each joint"
             raise ArgumentError(text)
-        return int(np.prod([int(n) for n in self.steps], dtype=object))
+        count = math.prod(self.steps)
+        if count >= 2**63:
+            raise ArgumentError(f"the grid has {count} states\n  write: fewer values of each joint")
+        return count
 
     def rows(self, first: int, count: int, limits: Values) -> Values:
         """Return states by their numbers."""
@@ -126,7 +143,9 @@ class Table(States):
     def _values(self) -> Values:
         try:
             values: Values = np.load(self.file, mmap_mode="r", allow_pickle=False)
-        except (OSError, ValueError) as error:
+            if not isinstance(values, np.ndarray):
+                raise ValueError("several arrays")
+        except (OSError, ValueError, EOFError) as error:
             hint = "a file that numpy.save has written"
             text = f"{self.file}: cannot be read: {error}\n  write: {hint}"
             raise FileError(text, str(self.file), None, str(error), hint) from error
@@ -145,7 +164,11 @@ class Table(States):
 
     def rows(self, first: int, count: int, limits: Values) -> Values:
         """Return rows of the file."""
-        return np.array(self._values()[first : first + count])
+        rows = np.array(self._values()[first : first + count])
+        if not np.isfinite(rows).all():
+            row = first + int(np.argmin(np.isfinite(rows).all(axis=1)))
+            raise ArrayError(f"{self.file}: row {row} has a number that is not finite\n  write: joint values, rad or m")
+        return rows
 
     def files(self) -> list[Path]:
         """Return the file."""

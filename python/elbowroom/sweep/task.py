@@ -7,18 +7,22 @@ import json
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from elbowroom import _elbowroom
 from elbowroom.errors import ArgumentError, FileError
-from elbowroom.pickles import checksum
 from elbowroom.sweep.states import Grid, Random, Sobol, States, Table
 
 _KEYS = ("version", "cell", "robot", "srdf", "ask", "level", "between", "shard_rows", "executor", "out", "states")
 _ASK = ("collision", "distance")
 _EXECUTORS = ("local", "ray")
 _LARGEST_SHARD = 10_000_000
+# States whose answers are compared to tell whether two models are one.
+_PROBES = 256
 
 
 @dataclass(frozen=True)
@@ -92,13 +96,14 @@ class Task:
         source = _elbowroom.Cell.load(self.model) if self.is_cell else _elbowroom.Robot.load(self.model, self.srdf)
         return _elbowroom.Checker(source, level=self.level, between=self.between, threads=threads)
 
-    def identity(self) -> dict[str, Any]:
+    def identity(self, checker: _elbowroom.Checker) -> dict[str, Any]:
         """Return what the answers depend on. Parts of one sweep have the same; where the work is done does not count."""
-        files = [self.model, *([self.srdf] if self.srdf else []), *self.states.files()]
         states = {key: str(value) if isinstance(value, Path) else value for key, value in vars(self.states).items()}
         return {
             "elbowroom": _elbowroom.__version__,
-            "files": {file.name: checksum(file) for file in files},
+            "model": self.model.name,
+            "fingerprint": fingerprint(checker),
+            "files": [checksum(file) for file in self.states.files()],
             "states": {"kind": type(self.states).__name__.lower(), **states},
             "ask": self.ask,
             "level": self.level,
@@ -107,9 +112,35 @@ class Task:
         }
 
 
+def fingerprint(checker: _elbowroom.Checker) -> str:
+    """Return a hash, in hex, of what a model answers about some states of its own.
+
+    A model is many files, on each machine. Two that answer alike to the bit, with nearest points, are taken for one.
+    """
+    q = Random(_PROBES, 1).rows(0, _PROBES, checker.limits)
+    found = checker.witness(q)
+    content = hashlib.sha256(json.dumps([checker.joints, found.a, found.b]).encode())
+    for values in (checker.limits, found.distance_m, found.point_a_m, found.point_b_m):
+        content.update(np.ascontiguousarray(values).tobytes())
+    return content.hexdigest()
+
+
 def digest(identity: dict[str, Any]) -> str:
     """Return the SHA-256 of an identity in hex."""
     return hashlib.sha256(json.dumps(identity, sort_keys=True).encode()).hexdigest()
+
+
+def checksum(file: Path) -> str:
+    """Return the SHA-256 of a file in hex."""
+    with _opened(file) as content:
+        return hashlib.file_digest(content, "sha256").hexdigest()
+
+
+def _opened(file: Path) -> BufferedReader:
+    try:
+        return file.open("rb")
+    except OSError as error:
+        raise _refused(file, f"cannot be read: {error}", "a file that is there") from error
 
 
 def _refused(file: Path, message: str, hint: str) -> FileError:
@@ -138,6 +169,8 @@ def _of_table(table: dict[str, Any], folder: Path, name: str) -> Task:
         raise ArgumentError('the states are missing\n  write: [states] with kind = "random" and rows = 1000000')
     text = {key: _text(table, key) for key in ("cell", "robot", "srdf", "ask", "level", "between", "executor", "out")}
     srdf = text["srdf"]
+    if srdf and "cell" in table:
+        raise ArgumentError("`srdf` belongs to a robot\n  write: srdf = \"arm.srdf\" in the cell file, below [robot.NAME]")
     return Task(
         model=folder / str(text["cell"] or text["robot"]),
         states=_states(states, folder),
@@ -161,7 +194,7 @@ def _text(table: dict[str, Any], key: str) -> str | None:
 
 def _whole(table: dict[str, Any], key: str, default: int | None = None) -> int:
     value = table.get(key, default)
-    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+    if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value < 2**63:
         raise ArgumentError(f"`{key}` is {value!r}\n  write: a whole number, as {key} = 1000")
     return value
 
@@ -179,9 +212,12 @@ def _states(table: dict[str, Any], folder: Path) -> States:
         return sequence(Sobol)
     if kind == "table":
         _known(table, ("kind", "file"), "a table")
-        return Table(folder / (_text(table, "file") or "states.npy"))
+        file = _text(table, "file")
+        if file is None:
+            raise ArgumentError('`file` is missing\n  write: file = "states.npy", which numpy.save has written')
+        return Table(folder / file)
     _known(table, ("kind", "steps"), "a grid")
     steps = table.get("steps")
-    if not isinstance(steps, list) or not all(isinstance(n, int) and n > 0 for n in steps):
+    if not isinstance(steps, list) or not all(type(n) is int and 0 < n < 2**31 for n in steps):
         raise ArgumentError(f"`steps` is {steps!r}\n  write: one whole number for each joint, as steps = [20, 20, 10]")
     return Grid(tuple(steps))

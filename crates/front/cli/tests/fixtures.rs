@@ -120,7 +120,9 @@ fn a_shield_that_was_written_is_read_again_and_a_broken_one_refused() {
     };
     let open = format!("solid open\n{}{}endsolid open\n", facet("1 0 0"), facet("0 1 0"));
     std::fs::write(dir.path().join("open.stl"), open).unwrap();
+    // In the wrong unit the shield lies elsewhere: the tool would keep off it in place of the object.
     for (keys, expected) in [
+        ("mesh = \"shield.stl\"\nmesh_unit = \"mm\"", "of 8 corners of \"block\" in it"),
         ("mesh = \"open.stl\"", "the protected mesh is open"),
         ("mesh = \"shield.stl\"\nwidth = 3", "either `mesh` or `target`"),
         (

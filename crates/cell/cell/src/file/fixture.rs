@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
+use elbowroom_proximity::contact::triangle_surface;
 use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_robot::ObjectId;
 use elbowroom_scene::Object;
 use elbowroom_shared_control::{ProtectedSurface, ShieldSettings, ShieldTarget};
+use elbowroom_spatial::Vec3;
 use elbowroom_spatial::units::LengthUnit;
-use elbowroom_spatial::{Pose, Vec3};
 
 use super::fixture_tool::tool;
 use super::models;
@@ -18,6 +19,9 @@ use super::schema::{FIXTURE, FIXTURE_DRILL, FIXTURE_FACES, FIXTURE_TARGET, names
 use crate::area_border::{AROUND, crossing_edges, crossing_text};
 use crate::fixture::{CellFixture, ShieldSource};
 use crate::{Cell, Units};
+
+/// Chord error of round solids whose corners are looked for in a shield, m.
+const CHORD_M: f64 = 1e-3;
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -46,7 +50,7 @@ fn fixture(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellFixture> {
     let protects = object(&t.need("protects", "protects = \"bone\"   (an object)")?, cell)?;
     let object = &cell.objects[protects.0];
     let shield = match t.get("mesh") {
-        Some(file) => ShieldSource::Mesh(shield_of_file(&file, t, object.in_world)?),
+        Some(file) => ShieldSource::Mesh(shield_of_file(&file, t, object)?),
         None => generated(t, cell.units, object)?,
     };
     Ok(CellFixture {
@@ -89,7 +93,7 @@ fn generated(t: &Table<'_>, units: Units, object: &Object) -> Result<ShieldSourc
 }
 
 /// A shield from a file in the world, in the frame of the object.
-fn shield_of_file(file: &Value<'_>, t: &Table<'_>, object_in_world: Pose) -> Result<Arc<TriMesh>> {
+fn shield_of_file(file: &Value<'_>, t: &Table<'_>, object: &Object) -> Result<Arc<TriMesh>> {
     for key in ["target", "width", "offset", "depth", "flare", "tolerance"] {
         if let Some(v) = t.get(key) {
             return Err(v.error("is of a generated shield, and this one is read").hint("either `mesh` or `target`"));
@@ -99,11 +103,26 @@ fn shield_of_file(file: &Value<'_>, t: &Table<'_>, object_in_world: Pose) -> Res
     let Shape::Mesh(mesh) = models::mesh(file, unit)? else {
         return Err(file.error("holds no mesh").hint("an STL, OBJ or PLY file"));
     };
-    let vertices = mesh.vertices().iter().map(|p| object_in_world.inverse_transform_point(*p)).collect();
+    let vertices = mesh.vertices().iter().map(|p| object.in_world.inverse_transform_point(*p)).collect();
     let mesh =
         TriMesh::new(vertices, mesh.triangles().to_vec()).map(Arc::new).map_err(|e| file.error(e.to_string()))?;
-    ProtectedSurface::new(mesh.clone(), object_in_world).map_err(|e| file.error(e.to_string()))?;
+    ProtectedSurface::new(mesh.clone(), object.in_world).map_err(|e| file.error(e.to_string()))?;
+    encloses(&mesh, object, file)?;
     Ok(mesh)
+}
+
+/// Refuses a shield that lies elsewhere: the tool keeps off the shield in place of the object. An opening leaves a part of the
+/// surface out, so more than half of its corners must be in the shield.
+fn encloses(shield: &TriMesh, object: &Object, file: &Value<'_>) -> Result<()> {
+    let Some(surface) = triangle_surface(&object.shape, CHORD_M) else { return Ok(()) };
+    let corners = surface.vertices();
+    let inside = corners.iter().filter(|p| shield.contains(**p)).count();
+    if 2 * inside > corners.len() {
+        return Ok(());
+    }
+    let what =
+        format!("has {inside} of {} corners of \"{}\" in it, and would not protect it", corners.len(), object.name);
+    Err(file.error(what).hint("a shield around the object, in the world; for an STL in mm: mesh_unit = \"mm\""))
 }
 
 fn object(v: &Value<'_>, cell: &Cell) -> Result<ObjectId> {
