@@ -221,6 +221,13 @@ impl<'s> VirtualRobot<'s> {
         least
     }
 
+    /// Least singular value of the Jacobian of the arm that holds the work-piece, as
+    /// [`CooperationSettings::least_singular_value`] bounds it for what is foreseen; infinite with fewer than six joints.
+    pub fn least_singular_value(&mut self) -> f64 {
+        let holding = &mut self.holdings[self.carried.holder];
+        holding.least_singular_value(&self.arms[holding.member].state.q)
+    }
+
     /// Whether the arm moves with the work-piece.
     pub(crate) fn carries(&self, member: usize) -> bool {
         let follower = self.hand_over.as_ref().and_then(HandOver::follower);

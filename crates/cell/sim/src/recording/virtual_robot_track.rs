@@ -18,6 +18,8 @@ pub struct VirtualRobotTrack {
     pub stops: Vec<WorkPieceStop>,
     /// Share of the desired motion that was carried out, 0 to 1.
     pub carried_share: f64,
+    /// Least [`VirtualRobotSample::singular_value`] with which a robot plans to hold the work-piece.
+    pub least_singular_value: f64,
     /// The camera that looks at the work-piece, if there is one.
     pub view: Option<ViewTrack>,
 }
@@ -49,6 +51,9 @@ pub struct VirtualRobotSample {
     /// Least distance between two of the robots, with the work-piece, m; infinite beyond 0.1 m; what may touch does not
     /// count.
     pub gap_m: f64,
+    /// Least singular value of the Jacobian of the robot that holds the work-piece, metres divided by the distance of its tool
+    /// from its base: 0 in a singularity. Infinite with fewer than six joints.
+    pub singular_value: f64,
     /// Share of the surface in view of the camera that the robots hide, 0 to 1; `None` without a camera, or if nothing is in
     /// view.
     pub hidden_share: Option<f64>,

@@ -83,6 +83,7 @@ impl<'s> CooperatingRobots<'s> {
                 hand_overs: Vec::new(),
                 stops: Vec::new(),
                 carried_share: 0.0,
+                least_singular_value: spec.settings.least_singular_value,
                 view: spec
                     .view
                     .as_ref()
@@ -152,6 +153,7 @@ impl<'s> CooperatingRobots<'s> {
             rate: step.rate,
             is_stopped: is_held,
             gap_m: self.robot.gap_m(FAR_M),
+            singular_value: self.robot.least_singular_value(),
             hidden_share,
         });
         Ok(())
