@@ -13,15 +13,15 @@ pub(super) fn fit(points: &[Vec3]) -> Option<(Capsule, Pose)> {
         principal * Rotation::from_axis_angle(Vec3::X, std::f64::consts::FRAC_PI_2),
         principal * Rotation::from_axis_angle(Vec3::Y, std::f64::consts::FRAC_PI_2),
     ];
-    let mut seen = Projection::default();
+    let mut projection = Projection::default();
     let mut volume = |rotation| {
-        seen.look(points, rotation);
-        seen.capsule(1.0).0.volume()
+        projection.project(points, rotation);
+        projection.capsule(1.0).0.volume()
     };
     let rotated = starts.map(|s| principal_axes::descend(s, &[Vec3::X, Vec3::Y], &mut volume));
     let (_, rotation) = rotated.into_iter().min_by(|x, y| x.0.total_cmp(&y.0))?;
-    seen.look(points, rotation);
-    Some(verified(points, seen.smallest_capsule()))
+    projection.project(points, rotation);
+    Some(verified(points, projection.smallest_capsule()))
 }
 
 /// Points projected along the z axis of a frame, and the smallest circle around them.
@@ -37,7 +37,7 @@ struct Projection {
 
 impl Projection {
     /// Projects along the z axis of another frame; the memory is reused.
-    fn look(&mut self, points: &[Vec3], rotation: Rotation) {
+    fn project(&mut self, points: &[Vec3], rotation: Rotation) {
         self.rotation = rotation;
         self.flat.clear();
         self.heights.clear();

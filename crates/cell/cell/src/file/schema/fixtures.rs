@@ -70,7 +70,7 @@ pub(in crate::file) const VIRTUAL_ROBOT: &[Key] = &[
     key("stream", "path", "required", "CSV of desired poses of the work-piece in the world: `t_s,x,y,z,qx,qy,qz,qw`, and `enable`, `clutch` (0 or 1) if wanted"),
     key("speed", "length per second", "250 mm/s", "largest speed of the origin of the work-piece"),
     key("turn_speed", "angle per second", "57.3°/s", "largest angular speed of the work-piece"),
-    key("gap", "length", "10 mm", "distance from everything that a free robot keeps"),
+    key("gap", "length", "10 mm", "distance from everything that a free robot aims to keep; below it, it turns away"),
     key("approach_speed", "length per second", "100 mm/s", "speed of a hand on its approach to the grasp and away from it"),
     key("settle_ms", "ms", "300", "time that a hand takes to close or to open"),
     key("horizon_s", "s", "5", "time that the motion is foreseen"),
