@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 import signal
@@ -194,7 +195,9 @@ def test_folders_and_files_that_cannot_be_used_are_told(tmp_path: Path) -> None:
 def test_an_interrupted_command_says_how_it_goes_on(tmp_path: Path) -> None:
     file = written(tmp_path, 400_000)
     command = [sys.executable, "-m", "elbowroom.sweep", str(file)]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    # A shell lets its background processes ignore the signal, and they pass that on.
+    heeded = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, preexec_fn=heeded)
     wait_for_parts(tmp_path / "big-sweep", 1)
     process.send_signal(signal.SIGINT)
     told = process.communicate(timeout=30)[1]
