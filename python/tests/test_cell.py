@@ -110,7 +110,7 @@ def test_a_cell_pickles_and_a_broken_one_teaches(exchange: Path, tmp_path: Path)
     assert found.value.line == 10 and "radius" in found.value.message
 
 
-def test_a_run_has_the_trace_and_the_report_of_the_command(command: Path, exchange: Path, tmp_path: Path) -> None:
+def test_a_run_has_the_trace_of_the_command_and_a_report(command: Path, exchange: Path, tmp_path: Path) -> None:
     run = er.Cell.load(exchange).run()
     subprocess.run([command, "run", exchange, "--out", tmp_path], capture_output=True, check=True)
     rows = [line.split(",") for line in (tmp_path / "trace.csv").read_text().splitlines()]

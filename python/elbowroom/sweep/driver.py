@@ -12,7 +12,7 @@ from elbowroom.sweep import executors, parts
 from elbowroom.sweep.parts import Part
 from elbowroom.sweep.progress import Progress
 from elbowroom.sweep.result import MANIFEST, Result, finish
-from elbowroom.sweep.shard import Job
+from elbowroom.sweep.shard import Job, remember
 from elbowroom.sweep.task import Task, digest
 
 
@@ -50,6 +50,7 @@ def run(
     identity = task.identity(checker)
     total = task.states.count(checker.limits)
     job = Job(task, digest(identity), identity["fingerprint"], folder, total)
+    remember(job, checker)
     with _alone(folder):
         # What it says is true of finished sweeps only.
         (folder / MANIFEST).unlink(missing_ok=True)

@@ -60,13 +60,13 @@ def write(file: Path, task: str, first: int, answers: Answers) -> Part:
     """Write a part: first under another name, which becomes its name when everything is on the disk."""
     pa, pq = imported("pyarrow", "pyarrow"), imported("pyarrow.parquet", "pyarrow")
     distance_m = answers.distance_m
-    finite = np.isfinite(distance_m) if distance_m is not None else None
+    finite = distance_m[np.isfinite(distance_m)] if distance_m is not None else np.empty(0, np.float32)
     part = Part(
         task=task,
         first=first,
         rows=len(answers.collides),
         colliding=int(answers.collides.sum()),
-        least_distance_m=float(distance_m[finite].min()) if distance_m is not None and finite.any() else None,  # type: ignore[union-attr]
+        least_distance_m=float(finite.min()) if len(finite) else None,
         sha256=answers.sha256(first),
     )
     columns: dict[str, Any] = {

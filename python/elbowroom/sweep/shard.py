@@ -44,6 +44,12 @@ class Job:
         return first, min(self.task.shard_rows, self.total - first)
 
 
+def remember(job: Job, checker: _elbowroom.Checker) -> None:
+    """Keep a model that this process has loaded already, on all cores."""
+    _CHECKERS.clear()
+    _CHECKERS[job.digest, None] = checker
+
+
 def compute(job: Job, shard: int, threads: int | None = None) -> Part:
     """Answer a shard, write its part, and return its footer."""
     key = (job.digest, threads)

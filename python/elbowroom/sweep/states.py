@@ -44,25 +44,26 @@ class States(ABC):
         return []
 
 
-def _checked(number: int, seed: int) -> None:
-    if not (0 <= number < 2**63 and 0 <= seed < 2**63):
-        raise ArgumentError(f"{number} states with the seed {seed}\n  write: whole numbers of 0 or more")
-
-
 @dataclass(frozen=True)
-class Random(States):
-    """Uniform between the limits: number `i` is the same in every sweep with this seed."""
+class Sequence(States):
+    """So many states between the limits, from a seed."""
 
     number: int
     seed: int = 1
 
     def __post_init__(self) -> None:
         """Refuse numbers that are not possible."""
-        _checked(self.number, self.seed)
+        if not (0 <= self.number < 2**63 and 0 <= self.seed < 2**63):
+            raise ArgumentError(f"{self.number} states with the seed {self.seed}\n  write: whole numbers of 0 or more")
 
     def count(self, limits: Values) -> int:
         """Return the number of states."""
         return self.number
+
+
+@dataclass(frozen=True)
+class Random(Sequence):
+    """Uniform between the limits: number `i` is the same in every sweep with this seed."""
 
     def rows(self, first: int, count: int, limits: Values) -> Values:
         """Return states by their numbers: Philox counts, so any state can be made without those before it."""
@@ -77,22 +78,15 @@ class Random(States):
 
 
 @dataclass(frozen=True)
-class Sobol(States):
+class Sobol(Sequence):
     """A scrambled Sobol sequence between the limits, which fills the space more evenly than random states."""
-
-    number: int
-    seed: int = 1
-
-    def __post_init__(self) -> None:
-        """Refuse numbers that are not possible."""
-        _checked(self.number, self.seed)
 
     def count(self, limits: Values) -> int:
         """Return the number of states."""
         if self.number > 2**_SOBOL_BITS:
             text = f"a Sobol sequence has at most {2**_SOBOL_BITS} states, not {self.number}\n  write: kind = \"random\""
             raise ArgumentError(text)
-        return self.number
+        return super().count(limits)
 
     def rows(self, first: int, count: int, limits: Values) -> Values:
         """Return states by their numbers."""

@@ -155,7 +155,7 @@ def _chosen(key: str, value: Any, known: tuple[str, ...]) -> None:
 def _known(table: dict[str, Any], known: tuple[str, ...], where: str) -> None:
     for key in table:
         if key not in known:
-            raise ArgumentError(f"`{key}` is no key of {where}\n  write: one of {', '.join(known)}")
+            raise ArgumentError(f"`{key}` is not a key of {where}\n  write: one of {', '.join(known)}")
 
 
 def _of_table(table: dict[str, Any], folder: Path, name: str) -> Task:

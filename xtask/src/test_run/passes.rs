@@ -44,15 +44,15 @@ impl Passes {
     fn of_file(file: PathBuf, root: &Path, programs: &[Program], env: &[(&str, &str)]) -> Self {
         let text = std::fs::read_to_string(&file).unwrap_or_default();
         let _ = std::fs::remove_file(&file);
-        let [without_package, with_package] = [false, true].map(|of_package| surroundings(root, env, of_package));
+        let surroundings = surroundings(root, env);
         let crates = root.join("crates");
         let stamp = |program: &Program| {
             let reads_package = program.folder.starts_with(crates.join(READS_PACKAGE));
-            let surroundings = if reads_package { with_package } else { without_package };
             // Programs outside `crates` read the sources.
-            let surroundings = surroundings.filter(|_| program.folder.starts_with(&crates))?;
+            let surroundings = surroundings.as_ref().filter(|_| program.folder.starts_with(&crates))?;
             let mut hasher = DefaultHasher::new();
-            surroundings.hash(&mut hasher);
+            surroundings.all.hash(&mut hasher);
+            reads_package.then_some(surroundings.package).hash(&mut hasher);
             look(&program.executable, &mut hasher);
             program.started.iter().for_each(|started| look(started, &mut hasher));
             Some(hasher.finish())
@@ -92,23 +92,32 @@ fn entry(line: &str) -> Option<(String, Pass)> {
     Some((name.to_owned(), Pass { stamp: u64::from_str_radix(stamp, 16).ok()?, tests: tests.parse().ok()? }))
 }
 
-/// Hashes what tests may read besides their program: settings, files of the repository (those of the Python package for
-/// its tests only), the real data. `None` without `git`.
-fn surroundings(root: &Path, env: &[(&str, &str)], of_package: bool) -> Option<u64> {
-    let mut hasher = DefaultHasher::new();
-    env.hash(&mut hasher);
+/// Hashes of what tests may read besides their program.
+struct Surroundings {
+    /// Settings, files of the repository, the real data.
+    all: u64,
+    /// Files of the Python package, which only its own tests read.
+    package: u64,
+}
+
+/// Hashes what tests may read besides their program. `None` without `git`.
+fn surroundings(root: &Path, env: &[(&str, &str)]) -> Option<Surroundings> {
+    let (mut all, mut package) = (DefaultHasher::new(), DefaultHasher::new());
+    env.hash(&mut all);
     let is_ours = |name: &OsStr| name.to_str().is_some_and(|name| name.starts_with("ELBOWROOM_"));
     let mut settings: Vec<_> = std::env::vars_os().filter(|(name, _)| is_ours(name)).collect();
     settings.sort();
-    settings.hash(&mut hasher);
+    settings.hash(&mut all);
     let files = shell::output(root, "git", &["ls-files", "-z", "--cached", "--others", "--exclude-standard"]).ok()?;
     let is_read = |file: &&str| {
         let ending = Path::new(file).extension().and_then(OsStr::to_str);
-        !matches!(ending, Some("rs" | "md")) && (of_package || !file.starts_with("python/"))
+        !matches!(ending, Some("rs" | "md"))
     };
-    files.split_terminator('\0').filter(is_read).for_each(|file| look(&root.join(file), &mut hasher));
-    look_into(&call::data_folder(root, None), &mut hasher);
-    Some(hasher.finish())
+    for file in files.split_terminator('\0').filter(is_read) {
+        look(&root.join(file), if file.starts_with("python/") { &mut package } else { &mut all });
+    }
+    look_into(&call::data_folder(root, None), &mut all);
+    Some(Surroundings { all: all.finish(), package: package.finish() })
 }
 
 /// Hashes a file's path, length and time, which cargo trusts too.
