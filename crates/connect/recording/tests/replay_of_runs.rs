@@ -34,14 +34,16 @@ fn replayed_bytes(cell: &Cell, bytes: &[u8]) -> Replay {
     found
 }
 
-/// Loads an example; `pallet` and `inspection` are shortened, as each of their ticks is slow: after 8 s a cart was evaded and
-/// a carton gripped, after 10 s a bar was handed over.
+/// Loads an example. Those with slow ticks are shortened: after 8 s a cart was evaded and a carton gripped, after 10 s a bar was
+/// handed over, after 5 s a hand was at the shield.
 fn loaded(example: &str) -> Cell {
     let file = examples().join(example).join("cell.toml");
     let text = std::fs::read_to_string(&file).unwrap();
-    let max_s = [("pallet", 8), ("inspection", 10)].iter().find(|(name, _)| *name == example && !is_long_run());
-    let text = match max_s {
-        Some((_, max_s)) => text.replace("tick_ms = 4", &format!("tick_ms = 8\nmax_s = {max_s}")),
+    let shortened = [("pallet", 4, 8), ("inspection", 4, 10), ("guided", 2, 5)];
+    let text = match shortened.iter().find(|(name, ..)| *name == example && !is_long_run()) {
+        Some((_, tick_ms, max_s)) => {
+            text.replace(&format!("tick_ms = {tick_ms}"), &format!("tick_ms = 8\nmax_s = {max_s}"))
+        }
         None => text,
     };
     Cell::parse(file, &text).unwrap()

@@ -333,13 +333,14 @@ fn map_steps(v: &Value<'_>, joints: &[usize], convert: impl Fn(usize, f64) -> f6
 
 /// The tables `[robot.NAME]`.
 fn read_robots(root: &Table<'_>, cell: &mut Cell, warnings: &mut Vec<Diagnostic>) -> Result<()> {
+    let mut models = models::RobotModels::default();
     for (name, t) in root.named("robot")? {
         if cell.robots.len() == RobotSet::CAPACITY {
             let what =
                 format!("has more than {} robots: deadlocks among others would not be found", RobotSet::CAPACITY);
             return Err(t.error(what).hint("two cells, each with the robots that share regions"));
         }
-        cell.robots.push(robot::read(name, &t, cell.units, warnings)?);
+        cell.robots.push(robot::read(name, &t, cell.units, &mut models, warnings)?);
     }
     Ok(())
 }

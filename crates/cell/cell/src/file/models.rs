@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use elbowroom_formats::srdf::{self as srdf_file, GroupState};
 use elbowroom_formats::toml_tables::{Table, Value};
-use elbowroom_formats::{Diagnostic, LoadOptions, NumberTable, mesh as mesh_file, read_file, robot as robot_file};
+use elbowroom_formats::{
+    Diagnostic, LoadOptions, LoadedRobot, NumberTable, mesh as mesh_file, read_file, robot as robot_file,
+};
 use elbowroom_kinematics::Chain;
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
@@ -37,21 +39,39 @@ fn folder(file: &Path) -> String {
     }
 }
 
-/// The robot of `model`, with its SRDF, joints file and unit.
-pub(super) fn robot(v: &Value<'_>, t: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<Robot> {
-    let file = path(v)?;
-    let unit = t.get("unit").map(|u| mesh_unit(&u)).transpose()?;
-    let of = |key: &str| t.get(key).map(|v| path(&v)).transpose();
-    let options = LoadOptions { srdf: of("srdf")?, joints: of("joints")?, unit, ..LoadOptions::default() };
-    let loaded = robot_file::load(&file, &options)?;
-    if loaded.robot.chain.dof() == 0 {
-        let why = loaded.warnings.into_iter().find(|w| w.message.starts_with("no joint moves"));
-        let hint = why.and_then(|w| w.hint);
-        let hint = hint.unwrap_or_else(|| "a model of a robot; solid objects go under [object.NAME]".to_owned());
-        return Err(v.error("names a model without a joint that moves").hint(hint));
+/// The models of a cell's robots. Robots of one model share its meshes, and what is computed for them: volumes, hulls.
+#[derive(Default)]
+pub(super) struct RobotModels {
+    loaded: Vec<(PathBuf, LoadOptions, LoadedRobot)>,
+}
+
+impl RobotModels {
+    /// The robot of `model`, with its SRDF, joints file and unit.
+    pub(super) fn robot(&mut self, v: &Value<'_>, t: &Table<'_>, warnings: &mut Vec<Diagnostic>) -> Result<Robot> {
+        let file = path(v)?;
+        let unit = t.get("unit").map(|u| mesh_unit(&u)).transpose()?;
+        let of = |key: &str| t.get(key).map(|v| path(&v)).transpose();
+        let options = LoadOptions { srdf: of("srdf")?, joints: of("joints")?, unit, ..LoadOptions::default() };
+        let loaded = self.load(file, options)?;
+        if loaded.robot.chain.dof() == 0 {
+            let why = loaded.warnings.iter().find(|w| w.message.starts_with("no joint moves"));
+            let hint = why.and_then(|w| w.hint.clone());
+            let hint = hint.unwrap_or_else(|| "a model of a robot; solid objects go under [object.NAME]".to_owned());
+            return Err(v.error("names a model without a joint that moves").hint(hint));
+        }
+        warnings.extend(loaded.warnings.iter().cloned());
+        Ok(loaded.robot.clone())
     }
-    warnings.extend(loaded.warnings);
-    Ok(loaded.robot)
+
+    fn load(&mut self, file: PathBuf, options: LoadOptions) -> Result<&LoadedRobot> {
+        let known = self.loaded.iter().position(|(path, with, _)| *path == file && *with == options);
+        let at = known.unwrap_or(self.loaded.len());
+        if known.is_none() {
+            let loaded = robot_file::load(&file, &options)?;
+            self.loaded.push((file, options, loaded));
+        }
+        Ok(&self.loaded[at].2)
+    }
 }
 
 /// Disables the pairs in the file of `srdf`.

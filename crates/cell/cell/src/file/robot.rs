@@ -8,16 +8,23 @@ use elbowroom_proximity::Shape;
 use elbowroom_robot::{Collider, Robot, RobotId};
 use elbowroom_spatial::Pose;
 
+use super::models::{self, RobotModels};
 use super::schema::{self, names};
-use super::{flange, joint_limits, mechanism, models, tools};
+use super::{flange, joint_limits, mechanism, tools};
 use crate::{CellRobot, Payload, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
-pub(super) fn read(name: &str, t: &Table<'_>, units: Units, warnings: &mut Vec<Diagnostic>) -> Result<CellRobot> {
+pub(super) fn read(
+    name: &str,
+    t: &Table<'_>,
+    units: Units,
+    models: &mut RobotModels,
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<CellRobot> {
     t.only(&names(&[schema::ROBOT]))?;
     let volumes = mechanism::volumes(name, t)?;
-    let mut robot = model(t, units, warnings)?;
+    let mut robot = model(t, units, models, warnings)?;
     if let Some(v) = t.get("ignore") {
         ignore(&v, &mut robot)?;
     }
@@ -78,7 +85,7 @@ fn ignore(v: &Value<'_>, robot: &mut Robot) -> Result<()> {
     Ok(())
 }
 
-fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Diagnostic>) -> Result<Robot> {
+fn model(t: &Table<'_>, units: Units, models: &mut RobotModels, warnings: &mut Vec<Diagnostic>) -> Result<Robot> {
     let example =
         "model = \"arm.urdf\"   (or: dh = [{ a = 300, alpha = 90, d = 600, theta = 0, min = -180, max = 180 }, …])";
     match (t.get("model"), t.get("dh")) {
@@ -87,7 +94,7 @@ fn model(t: &Table<'_>, units: Units, warnings: &mut Vec<Diagnostic>) -> Result<
             if let Some(v) = t.get("links").or_else(|| t.get("base_link")) {
                 return Err(v.error("belongs to `dh`; a model has its own solids").hint("leave it out"));
             }
-            models::robot(&file, t, warnings)
+            models.robot(&file, t, warnings)
         }
         (None, Some(dh)) => {
             if let Some(v) = ["joints", "unit"].iter().find_map(|key| t.get(key)) {

@@ -32,7 +32,7 @@ pub use to_tree::to_tree;
 pub use to_urdf::{UrdfExport, to_urdf, write_urdf};
 
 /// Options of [`load`].
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LoadOptions {
     /// SRDF file, whose disabled pairs are added to [`Robot::disabled_pairs`].
     pub srdf: Option<PathBuf>,
