@@ -28,6 +28,10 @@ const REPULSION: f64 = 1e4;
 const DECELERATION_SHARE: f64 = 0.5;
 /// Time in which an arm that is too near moves away by as much as is missing, s.
 const RECOVERY_S: f64 = 0.1;
+/// Speed along a distance that an arm gives up from which it is said to yield, m/s.
+const YIELDS_M_S: f64 = 0.01;
+/// Time after the last push in which an arm is still said to yield, s: pushes come and go while two arms move past each other.
+const YIELDS_ON_S: f64 = 0.5;
 
 /// Where an arm is and how it moves, for the others.
 #[derive(Debug)]
@@ -66,8 +70,8 @@ pub(crate) struct FreeArm {
     other_columns: Vec<[f64; 6]>,
     /// Joint velocities of the result, rad/s or m/s.
     pub velocity: Vec<f64>,
-    /// Whether something pushed the arm in the last step.
-    pub is_yielding: bool,
+    /// Time left in which it is said to yield, s.
+    yields_s: f64,
 }
 
 impl FreeArm {
@@ -80,8 +84,23 @@ impl FreeArm {
             columns: vec![[0.0; 6]; n],
             other_columns: vec![[0.0; 6]; n],
             velocity: vec![0.0; n],
-            is_yielding: false,
+            yields_s: 0.0,
         }
+    }
+
+    /// Whether something pushes the arm, or did a moment ago.
+    pub fn is_yielding(&self) -> bool {
+        self.yields_s > 0.0
+    }
+
+    /// The arm had to stand.
+    pub fn stood(&mut self) {
+        self.yields_s = YIELDS_ON_S;
+    }
+
+    /// The arm has the work-piece, and is not free.
+    pub fn carries(&mut self) {
+        self.yields_s = 0.0;
     }
 
     /// Finds the joint velocities of the arm `own` among `arms` for `dt_s` seconds.
@@ -110,10 +129,11 @@ impl FreeArm {
         if !self.problem.solve(&mut x) {
             x.fill(0.0);
         }
-        self.is_yielding = self.problem.constraints().iter().any(|row| {
+        let is_pushed = self.problem.constraints().iter().any(|row| {
             let wanted: f64 = row.a.iter().zip(&self.problem.desired).map(|(a, v)| a * v).sum();
-            wanted < row.b - 1e-6
+            row.b - wanted > YIELDS_M_S
         });
+        self.yields_s = if is_pushed { YIELDS_ON_S } else { (self.yields_s - dt_s).max(0.0) };
         self.velocity = x;
     }
 

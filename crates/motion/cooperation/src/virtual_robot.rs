@@ -205,7 +205,7 @@ impl<'s> VirtualRobot<'s> {
 
     /// Whether an arm keeps out of the way of something.
     pub fn is_yielding(&self, member: usize) -> bool {
-        self.limbs[member].is_in_the_way || self.limbs[member].free.is_yielding && !self.carries(member)
+        self.limbs[member].is_in_the_way || self.limbs[member].free.is_yielding() && !self.carries(member)
     }
 
     /// Least distance between two members, with the work-piece, m, up to a distance beyond which it is infinite; what may
@@ -289,7 +289,7 @@ impl<'s> VirtualRobot<'s> {
         }
         for member in 0..self.members.len() {
             if self.carries(member) {
-                self.limbs[member].free.is_yielding = false;
+                self.limbs[member].free.carries();
                 continue;
             }
             let limb = &mut self.limbs[member];

@@ -45,7 +45,7 @@ fn an_arm_in_the_way_yields_and_keeps_its_limits() {
     let mut robot = pair.robot(settings);
     let mut checker = Checker::new(&pair.scene, CheckerOptions::default());
     let start = part_pose(&pair);
-    let (mut state, mut least_m, mut yielded) = (pair.state(), f64::INFINITY, false);
+    let (mut state, mut least_m, mut yields, mut times) = (pair.state(), f64::INFINITY, false, 0);
     state.attach_at(&pair.scene, elbowroom_robot::ObjectId(0), robot.attachment().unwrap().clone()).unwrap();
     let limits = &pair.members[1].limits;
     let mut before = robot.qd(1).to_vec();
@@ -64,7 +64,8 @@ fn an_arm_in_the_way_yields_and_keeps_its_limits() {
         let [a, b] = [0, 1].map(|member: usize| Selection::Robot(pair.members[member].robot));
         let gap_m = checker.between(a, b).distance(&state).unwrap().metres;
         least_m = least_m.min(gap_m);
-        yielded |= robot.is_yielding(1);
+        times += usize::from(robot.is_yielding(1) && !yields);
+        yields = robot.is_yielding(1);
         for ((qd, before), l) in robot.qd(1).iter().zip(&before).zip(limits) {
             assert!(qd.abs() <= l.velocity * (1.0 + 1e-9), "{qd} of {}", l.velocity);
             let stopped_by_the_proof = *qd == 0.0;
@@ -75,5 +76,6 @@ fn an_arm_in_the_way_yields_and_keeps_its_limits() {
         }
         before.copy_from_slice(robot.qd(1));
     }
-    assert!(yielded && least_m > 0.0, "yielded {yielded}, least distance {least_m}");
+    // Pushes that come and go are one time.
+    assert!((1..=2).contains(&times) && least_m > 0.0, "yielded {times} times, least distance {least_m}");
 }

@@ -27,10 +27,10 @@ impl ProtectedSurface {
     /// A mesh that is open, inside out or not oriented, or a pose that is not finite.
     pub fn new(mesh: Arc<TriMesh>, in_world: Pose) -> Result<Self, NavigatorError> {
         check_solid(&mesh)?;
-        let surface = NormalConeHierarchy::new(mesh);
-        if !surface.is_oriented() {
+        if !mesh.is_oriented() {
             return Err(NavigatorError::Unoriented);
         }
+        let surface = NormalConeHierarchy::new(mesh);
         if !in_world.is_finite() {
             return Err(NavigatorError::PoseNotFinite("a protected surface"));
         }

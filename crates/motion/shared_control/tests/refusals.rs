@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use elbowroom_proximity::TriMesh;
-use elbowroom_shared_control::{Limit, NavigatorError, NavigatorSettings, ProtectedSurface, SurfaceNavigator};
+use elbowroom_shared_control::{
+    Limit, NavigatorError, NavigatorSettings, ProtectedSurface, ShieldError, ShieldSettings, ShieldTarget,
+    SurfaceNavigator, generate_shield,
+};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::common::{ball, block};
@@ -28,6 +31,18 @@ fn surfaces_without_a_clear_inside_are_refused() {
     let nowhere = Pose::from_translation(Vec3::X * f64::INFINITY);
     let error = ProtectedSurface::new(solid, nowhere).unwrap_err();
     assert_eq!(error, NavigatorError::PoseNotFinite("a protected surface"));
+}
+
+#[test]
+fn a_target_on_reversed_triangles_is_not_blamed() {
+    let solid = block(Vec3::splat(0.1));
+    let drill = ShieldTarget::Drill { at: Vec3::Z * 0.05, axis: -Vec3::Z };
+    let settings = ShieldSettings { tolerance_m: 0.01, ..ShieldSettings::with_width(0.02) };
+    assert!(generate_shield(&solid, &drill, &settings).is_ok());
+    let corner = |v: u32| solid.vertices()[v as usize];
+    let is_above = |i: usize| solid.triangles()[i].iter().all(|v| corner(*v).z > 0.0);
+    let error = generate_shield(&flipped(&solid, is_above), &drill, &settings).unwrap_err();
+    assert_eq!(error, ShieldError::Surface(NavigatorError::Unoriented));
 }
 
 #[test]

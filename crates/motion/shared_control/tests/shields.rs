@@ -96,14 +96,15 @@ fn shields_protect_everything_but_the_opening() {
     assert!(protected > 5000 && bare > 5000 && opened > 2000, "{protected} protected, {bare} bare, {opened} opened");
 }
 
-/// Points of a block, as a grid: between them the distances change by at most `beside_m`.
-struct ToolPoints {
+/// A tool, and points of it: between them the distances change by at most `beside_m`.
+struct SampledTool {
+    shape: Shape,
     points: Vec<Vec3>,
     beside_m: f64,
 }
 
-impl ToolPoints {
-    fn of_block(size: Vec3, step_m: f64) -> Self {
+impl SampledTool {
+    fn block(size: Vec3, step_m: f64) -> Self {
         let count = |length: f64| (length / step_m).ceil() as usize;
         let at = |i: usize, length: f64| (i as f64 / count(length) as f64 - 0.5) * length;
         let mut points = Vec::new();
@@ -112,20 +113,29 @@ impl ToolPoints {
                 points.extend((0..=count(size.z)).map(|k| Vec3::new(at(i, size.x), at(j, size.y), at(k, size.z))));
             }
         }
-        Self { points, beside_m: 0.5 * 3.0_f64.sqrt() * step_m }
+        Self { shape: Shape::Mesh(block(size)), points, beside_m: 0.5 * 3.0_f64.sqrt() * step_m }
+    }
+
+    /// A ball by its corners: no point of a triangle is farther from all of them than its longest edge.
+    fn ball(radius: f64, n: usize) -> Self {
+        let mesh = ball(radius, n);
+        let corner = |v: u32| mesh.vertices()[v as usize];
+        let edges = mesh.triangles().iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+        let beside_m = edges.map(|(a, b)| corner(a).distance(corner(b))).fold(0.0, f64::max);
+        Self { points: mesh.vertices().to_vec(), shape: Shape::Mesh(mesh), beside_m }
     }
 }
 
 /// A tool may be wherever no point of it is in the shield, by the formula; nothing is left open for it elsewhere.
 #[test]
 fn tools_meet_the_shield_where_the_formula_says() {
-    let size = Vec3::new(0.002, 0.002, 0.02);
-    let (tool, grid) = (Shape::Mesh(block(size)), ToolPoints::of_block(size, 0.001));
+    let tools = [SampledTool::block(Vec3::new(0.002, 0.002, 0.02), 0.001), SampledTool::ball(0.002, 2)];
     let (mut free, mut in_opening, mut blocked) = (0, 0, 0);
     for_random_shields(|solid, shield, settings, random| {
         let shape = Shape::Mesh(shield.mesh.clone());
         let mut workspace = Workspace::new();
         for k in 0..amount(300, 125_000) {
+            let tool = &tools[usize::from(k % 3 == 0)];
             let (foot, axis) = shield.passage[random.below(shield.passage.len())];
             let tilt = Rotation::from_rotation_vector(point(random, if k % 2 == 0 { 0.1 } else { 3.0 }));
             let middle = foot + axis * random.between(0.0, 0.03) + point(random, if k % 2 == 0 { 0.001 } else { 0.03 });
@@ -136,25 +146,25 @@ fn tools_meet_the_shield_where_the_formula_says() {
                 let (around, opening) = formula(solid, shield, settings, pose.transform_point(*p), f64::INFINITY);
                 around.max(-opening)
             };
-            let least = grid.points.iter().map(outside).fold(f64::INFINITY, f64::min);
-            let meets = workspace.collides(&tool, &pose, &shape, &Pose::IDENTITY);
+            let least = tool.points.iter().map(outside).fold(f64::INFINITY, f64::min);
+            let meets = workspace.collides(&tool.shape, &pose, &shape, &Pose::IDENTITY);
             if least < -settings.tolerance_m {
                 blocked += 1;
                 assert!(meets, "{pose:?} is open: {least} m");
-            } else if least > settings.tolerance_m + grid.beside_m {
+            } else if least > settings.tolerance_m + tool.beside_m {
                 free += 1;
                 let is_below_the_shield = |p: &Vec3| {
                     let p = pose.transform_point(*p);
                     project_point(solid, &Pose::IDENTITY, p).signed_distance < settings.offset_m
                 };
-                in_opening += usize::from(grid.points.iter().any(is_below_the_shield));
+                in_opening += usize::from(tool.points.iter().any(is_below_the_shield));
                 assert!(!meets, "{pose:?} is blocked: {least} m");
             }
         }
     });
     println!("{free} poses free, {in_opening} of them in an opening, {blocked} blocked");
     assert!(
-        free > 300 && in_opening > 20 && blocked > 300,
+        free > 300 && in_opening > 20 && blocked > 200,
         "{free} free, {in_opening} in an opening, {blocked} blocked"
     );
 }

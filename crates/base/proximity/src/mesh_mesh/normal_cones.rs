@@ -68,12 +68,6 @@ impl NormalConeHierarchy {
         &self.mesh
     }
 
-    /// True if every part of the surface is closed and its triangles face the same side.
-    pub fn is_oriented(&self) -> bool {
-        let mesh = &self.mesh;
-        (0..mesh.triangles().len()).all(|t| mesh.in_closed_component[t] && mesh.in_oriented_component[t])
-    }
-
     #[inline(always)]
     pub(super) fn of_node(&self, height: u8, number: u32) -> &SurfacePatch {
         &self.levels[usize::from(height)][number as usize]

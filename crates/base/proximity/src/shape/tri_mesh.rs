@@ -118,6 +118,11 @@ impl TriMesh {
         &self.report
     }
 
+    /// True if every part of the surface is closed and its triangles face the same side.
+    pub fn is_oriented(&self) -> bool {
+        self.in_closed_component.iter().zip(&self.in_oriented_component).all(|(closed, oriented)| *closed && *oriented)
+    }
+
     /// The convex hull, computed on the first call; `None` if the mesh is flat.
     pub fn hull(&self) -> Option<&ConvexHull> {
         self.hull.get_or_init(|| ConvexHull::from_points(&self.vertices).ok()).as_ref()

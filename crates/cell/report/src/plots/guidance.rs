@@ -1,7 +1,8 @@
 //! Plots of a guided tool over time: where the hand wants it and where it is, its gap, and what the hand feels.
 
 use elbowroom_sim::{GuidanceSample, GuidanceTrack, Recording, RobotTrack};
-use serde_json::json;
+use elbowroom_spatial::Vec3;
+use serde_json::{Value, json};
 
 use super::figure::{Figure, curve_name, round};
 use super::plot::{Plot, axis, layout, line, stroke, with};
@@ -12,9 +13,40 @@ pub fn all(runs: &[(&str, &Recording)], run: usize) -> Vec<Figure> {
     let (label, recording) = runs[run];
     let of_robot = |robot: &RobotTrack| {
         let track = robot.guidance.as_ref()?;
-        Some(curves(track, &curve_name(label, recording, robot), run))
+        let name = curve_name(label, recording, robot);
+        Some([motions(track, &name, run), curves(track, &name, run)])
     };
-    recording.robots.iter().filter_map(of_robot).collect()
+    recording.robots.iter().filter_map(of_robot).flatten().collect()
+}
+
+/// Where the hand wants the tool, dotted, and where the tool is, along the axes of the world from where the tool started.
+fn motions(track: &GuidanceTrack, name: &str, run: usize) -> Figure {
+    let s = &track.samples;
+    let start = s.first().map_or(Vec3::ZERO, |first| first.tool_in_world.translation);
+    let mut plot = Plot::new(layout(axis("time (s)"), axis("mm from the start")));
+    let mut add = |what: String, stroke: Value, at: &dyn Fn(&GuidanceSample) -> Option<f64>| {
+        let value = |i: usize| at(&s[i]).map_or(f64::NAN, |m| 1e3 * m);
+        let kept = pick(s.len(), MAX_POINTS, &[&value]);
+        let (x, y) = kept.iter().map(|&i| (round(s[i].t_s), round(value(i)))).unzip();
+        plot.add(line(x, y, &what, stroke));
+    };
+    for (axis, (name, color)) in [("x", "#d62728"), ("y", "#2ca02c"), ("z", "#1f77b4")].into_iter().enumerate() {
+        add(format!("{name} of the tool"), stroke(color, 2.0), &|s| Some((s.tool_in_world.translation - start)[axis]));
+        let dashed = with(stroke(color, 1.0), json!({ "dash": "dot" }));
+        add(format!("{name} desired"), dashed, &|s| Some((s.wanted?.translation - start)[axis]));
+    }
+    Figure {
+        title: format!("Desired and actual motion: {name}"),
+        note: format!(
+            "The desired point of {} and the tool, along the axes of the world, from where the tool started.",
+            track.operator
+        ),
+        over_time: true,
+        run: Some(run),
+        height: 300,
+        wide: true,
+        drawing: plot.into(),
+    }
 }
 
 fn curves(track: &GuidanceTrack, name: &str, run: usize) -> Figure {

@@ -10,6 +10,7 @@ use super::level_set::{Field, level_set};
 use super::opening::{Foot, Opening};
 use super::settings::ShieldSettings;
 use super::target::{ShieldTarget, TargetSurface};
+use crate::NavigatorError;
 use crate::protected_surface::check_solid;
 
 /// A closed surface around a protected solid, opened along a target.
@@ -68,7 +69,10 @@ pub fn generate_shield(
     check_fineness(protected, settings)?;
     let solid = Shape::Mesh(protected.clone());
     let surface = TargetSurface::new(&solid, protected, settings);
-    let feet = surface.feet(target)?;
+    // A target on triangles that face inwards seems to come from inside.
+    let feet = surface
+        .feet(target)
+        .map_err(|e| if protected.is_oriented() { e } else { NavigatorError::Unoriented.into() })?;
     // The level lies half the tolerance outside, so that no facet cuts into what is protected; the opening is wider by as
     // much.
     let level = 0.5 * settings.tolerance_m;
