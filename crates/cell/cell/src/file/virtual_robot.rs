@@ -15,6 +15,13 @@ use super::tools::with_exchanged_tools;
 use crate::virtual_robot::{CellVirtualRobot, VirtualRobotMember, WorkPieceView};
 use crate::{Cell, CellRobot, OperatorStream, SensorKind, Units};
 
+/// Longest time that a hand takes to close or to open, s.
+const MOST_SETTLE_S: f64 = 60.0;
+/// Longest time that a motion is foreseen, s.
+const MOST_HORIZON_S: f64 = 60.0;
+/// Least speed of a hand, m/s.
+const LEAST_APPROACH_M_S: f64 = 1e-3;
+
 type Result<T> = std::result::Result<T, Diagnostic>;
 
 const GRASPS: &str = "grasps = { left = [{ at = [0, 0, 80], rpy = [180, 0, 0], approach = 60 }], right = [...] }";
@@ -101,6 +108,17 @@ fn view(t: &Table<'_>, cell: &Cell, work_piece: ObjectId, stream: &OperatorStrea
     Ok(Some(WorkPieceView { camera: name.to_owned(), visibility }))
 }
 
+/// Speed of a hand; with a slower one than this, a hand-over would seem to hang.
+fn approach_speed(t: &Table<'_>, units: Units, default_m_s: f64) -> Result<f64> {
+    let Some(v) = t.get("approach_speed") else { return Ok(default_m_s) };
+    let speed_m_s = units.positive_length(&v)?;
+    if speed_m_s >= LEAST_APPROACH_M_S {
+        return Ok(speed_m_s);
+    }
+    let what = format!("is {} mm/s: a hand-over would take for ever", 1e3 * speed_m_s);
+    Err(v.error(what).hint("a speed of at least 1 mm/s"))
+}
+
 fn settings(t: &Table<'_>, units: Units) -> Result<CooperationSettings> {
     let default = CooperationSettings::default();
     let length = |key: &str, default: f64| t.get(key).map_or(Ok(default), |v| units.positive_length(&v));
@@ -108,13 +126,23 @@ fn settings(t: &Table<'_>, units: Units) -> Result<CooperationSettings> {
         Some(v) => units.angle.to_radians(v.positive()?),
         None => default.angular_speed_rad_s,
     };
+    let seconds = |key: &str, per_s: f64, default: f64, most_s: f64| {
+        let Some(v) = t.get(key) else { return Ok(default) };
+        let seconds = v.positive()? / per_s;
+        if seconds <= most_s {
+            return Ok(seconds);
+        }
+        let what =
+            format!("is {seconds} s, more than {most_s} s: the work-piece would be held up, or foreseen, for too long");
+        Err(v.error(what).hint(format!("{key} = {}   (at most {})", default * per_s, most_s * per_s)))
+    };
     Ok(CooperationSettings {
         speed_m_s: length("speed", default.speed_m_s)?,
         angular_speed_rad_s,
         gap_m: length("gap", default.gap_m)?,
-        approach_m_s: length("approach_speed", default.approach_m_s)?,
-        settle_s: t.get("settle_ms").map_or(Ok(default.settle_s), |v| Ok(1e-3 * v.positive()?))?,
-        horizon_s: t.get("horizon_s").map_or(Ok(default.horizon_s), |v| v.positive())?,
+        approach_m_s: approach_speed(t, units, default.approach_m_s)?,
+        settle_s: seconds("settle_ms", 1e3, default.settle_s, MOST_SETTLE_S)?,
+        horizon_s: seconds("horizon_s", 1.0, default.horizon_s, MOST_HORIZON_S)?,
         hidden_share: t.get("hidden").map_or(Ok(default.hidden_share), |v| v.percent())?,
         ..default
     })
