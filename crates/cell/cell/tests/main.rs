@@ -15,4 +15,5 @@ mod mechanisms;
 mod planning_scene;
 mod seal;
 mod sealed_cell;
+mod shared_models;
 mod tools;
