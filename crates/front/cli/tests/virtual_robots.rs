@@ -80,6 +80,19 @@ fn the_bar_stops_before_a_region_and_the_reason_is_told() {
 }
 
 #[test]
+fn a_pose_that_is_left_out_is_not_carried_out() {
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), |cell| cell, 0.0);
+    let text = std::fs::read_to_string(dir.path().join("bar.csv")).unwrap();
+    let first: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();
+    let far = format!("0.5,1e12,{}", first[2..].join(","));
+    let rows = format!("t_s,x,y,z,qx,qy,qz,qw\n{}\n{far}\n", first.join(","));
+    std::fs::write(dir.path().join("bar.csv"), rows).unwrap();
+    let trio = &run(dir.path(), 0)["virtual_robots"][0];
+    assert!(trio["carried_share"].as_f64().unwrap() < 0.01, "{trio}");
+}
+
+#[test]
 fn wrong_tables_are_refused_at_their_line() {
     let dir = tempfile::tempdir().unwrap();
     let cases = [

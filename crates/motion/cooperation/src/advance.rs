@@ -203,7 +203,7 @@ impl VirtualRobot<'_> {
             let Some(member) = free else { return Err(Hold::Contact(hit.a, hit.b)) };
             let limb = &mut self.limbs[member];
             limb.next.copy_from_slice(&self.arms[member].state.q);
-            limb.free.stood();
+            limb.free.gives_way();
         }
     }
 

@@ -93,8 +93,8 @@ impl FreeArm {
         self.yields_s > 0.0
     }
 
-    /// The arm had to stand.
-    pub fn stood(&mut self) {
+    /// The arm had to stand, or to go home.
+    pub fn gives_way(&mut self) {
         self.yields_s = YIELDS_ON_S;
     }
 

@@ -205,7 +205,7 @@ impl<'s> VirtualRobot<'s> {
 
     /// Whether an arm keeps out of the way of something.
     pub fn is_yielding(&self, member: usize) -> bool {
-        self.limbs[member].is_in_the_way || self.limbs[member].free.is_yielding() && !self.carries(member)
+        self.limbs[member].free.is_yielding() && !self.carries(member)
     }
 
     /// Least distance between two members, with the work-piece, m, up to a distance beyond which it is infinite; what may
@@ -293,6 +293,9 @@ impl<'s> VirtualRobot<'s> {
                 continue;
             }
             let limb = &mut self.limbs[member];
+            if limb.is_in_the_way {
+                limb.free.gives_way();
+            }
             let attraction = match limb.waits_for {
                 Some(k) if !limb.is_in_the_way => {
                     Attraction { q: &self.forecasts[k].pre_grasp, velocity: Some(&limb.drift) }

@@ -76,6 +76,6 @@ fn an_arm_in_the_way_yields_and_keeps_its_limits() {
         }
         before.copy_from_slice(robot.qd(1));
     }
-    // Pushes that come and go are one time.
+    // Pushes that come and go within half a second are one time.
     assert!((1..=2).contains(&times) && least_m > 0.0, "yielded {times} times, least distance {least_m}");
 }

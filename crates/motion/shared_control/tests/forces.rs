@@ -192,6 +192,18 @@ fn a_mass_speeds_up_within_its_jerk() {
 }
 
 #[test]
+fn a_mass_at_rest_moves_on_although_rounding_left_less_energy_than_there_was() {
+    let mut body = VirtualBody::new(BodySettings::default()).unwrap();
+    let law = ForceLaw::spring(0.02, 2_000.0);
+    let mut field = FieldSample::default();
+    field.add(&law, law.range_m, 0.005, Vec3::Y, Vec3::ZERO);
+    body.begin(Vec3::ZERO, Some(Vec3::ZERO), &field, 2e-3);
+    assert!(body.end(Vec3::ZERO, Vec3::ZERO, field.potential_j * (1.0 + 1e-14)));
+    let velocity = body.begin(Vec3::ZERO, Some(Vec3::X * 0.01), &field, 2e-3);
+    assert!(velocity.x > 0.0, "{velocity:?}");
+}
+
+#[test]
 fn input_that_is_no_number_stops_the_mass() {
     let mut body = VirtualBody::new(BodySettings::default()).unwrap();
     let nan = Vec3::splat(f64::NAN);

@@ -197,6 +197,8 @@ impl Simulation<'_> {
                 OwnMotion::Cooperating(_) => continue,
                 OwnMotion::Guided(guided) => {
                     guided.advance(cell, states, t_s, *applied, |name, event| journal.event(t_s, *id, name, event))?;
+                    // Who moves after it in this tick is proven against where it is then.
+                    guided.write_state(&mut states[id.0]);
                     continue;
                 }
             };

@@ -54,6 +54,8 @@ pub(super) struct CooperatingRobots<'s> {
     desired_s: Option<f64>,
     /// Number of rows that were refused.
     left_out: usize,
+    /// The time between these poses and the ones before them, s.
+    left_out_s: f64,
     stopped_s: f64,
     is_held: bool,
     is_hidden: bool,
@@ -71,6 +73,7 @@ impl<'s> CooperatingRobots<'s> {
             robot: spec.start(cell, scene)?,
             desired_s: None,
             left_out: 0,
+            left_out_s: 0.0,
             stopped_s: 0.0,
             is_held: false,
             is_hidden: false,
@@ -165,7 +168,10 @@ impl<'s> CooperatingRobots<'s> {
         for (row_s, pose) in stream.rows_between(self.desired_s, t_s) {
             // A pose that is refused, because too many wait or it is too far away, is left out.
             let taken = pose.map_or(Ok(()), |pose| self.robot.desire(row_s, &pose));
-            self.left_out += usize::from(taken.is_err());
+            if taken.is_err() {
+                self.left_out += 1;
+                self.left_out_s += row_s - self.desired_s.unwrap_or(row_s);
+            }
             self.desired_s = Some(row_s);
         }
         let input = stream.at(t_s);
@@ -203,11 +209,11 @@ impl<'s> CooperatingRobots<'s> {
         }
         let (_, left_s) = self.robot.on_path();
         let done_s = self.robot.path_s();
-        // What did not come before the end of the run counts as the time between its rows.
+        // What was left out, or did not come before the end of the run, counts as the time between its rows.
         let unread = self.spec.stream.rows_between(self.desired_s, f64::INFINITY);
         let last_s = unread.filter(|(_, pose)| pose.is_some()).map(|(t_s, _)| t_s).fold(0.0, f64::max);
         let unread_s = (last_s - self.desired_s.unwrap_or(0.0)).max(0.0);
-        let whole_s = done_s + left_s + unread_s;
+        let whole_s = done_s + left_s + self.left_out_s + unread_s;
         self.track.carried_share = if whole_s > 0.0 { done_s / whole_s } else { 1.0 };
         self.track
     }

@@ -165,7 +165,9 @@ impl VirtualBody {
         }
         let mass = self.settings.mass_kg;
         let kinetic = 0.5 * mass * velocity.length_squared();
-        let share = if kinetic > left { (left.max(0.0) / kinetic).sqrt() } else { 1.0 };
+        // At rest nothing is there to be taken away, also if rounding has left less than nothing.
+        let left = left.max(0.0);
+        let share = if kinetic > left { (left / kinetic).sqrt() } else { 1.0 };
         let velocity = velocity * share;
         if self.dt_s > 0.0 {
             self.acceleration = (velocity - self.velocity) / self.dt_s;

@@ -65,7 +65,8 @@ impl Shield {
 
     fn admits(&self, tool: &Shape, tool_in_tcp: &Pose, (foot, axis): (Vec3, Vec3), settings: &ShieldSettings) -> bool {
         let shield = Shape::Mesh(self.mesh.clone());
-        let ground = foot - axis * (settings.depth_m - settings.tolerance_m).max(0.0);
+        // The ground of a shallow opening may be above the surface by the tolerance.
+        let ground = foot - axis * (settings.depth_m - settings.tolerance_m).max(-settings.offset_m);
         // From outside of the shield's box, wherever the tool's point is.
         let bounds = tool.aabb(tool_in_tcp);
         let reach = bounds.min.length().max(bounds.max.length());
