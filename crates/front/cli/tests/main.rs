@@ -19,6 +19,7 @@ mod mechanisms;
 mod messages;
 mod models;
 mod operators;
+mod operators_together;
 mod pair_file;
 mod pairs;
 mod perceived_live;

@@ -35,7 +35,8 @@ fn in_a_valley_the_velocity_changes_no_faster_than_the_brakes() {
 }
 
 /// The admissible projection of a ball's centre that is nearest to the desired one, in each step by itself: onto the planes of
-/// the triangles, or onto their borders, a radius and a gap outside; `last` if none is admissible (Reichenbach's rule).
+/// the triangles, or onto their borders, a radius and a gap outside; `last` if none is admissible (after Giralt et al., decision
+/// 0044).
 fn nearest_projection(mesh: &Arc<TriMesh>, away_m: f64, desired: Vec3, last: Vec3) -> Vec3 {
     let shape = Shape::Mesh(mesh.clone());
     let is_free = |p: Vec3| project_point(&shape, &Pose::IDENTITY, p).signed_distance >= away_m - 1e-9;

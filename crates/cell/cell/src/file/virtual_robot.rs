@@ -132,8 +132,7 @@ fn settings(t: &Table<'_>, units: Units) -> Result<CooperationSettings> {
         if seconds <= most_s {
             return Ok(seconds);
         }
-        let what =
-            format!("is {seconds} s, more than {most_s} s: the work-piece would be held up, or foreseen, for too long");
+        let what = format!("is {seconds} s, more than {most_s} s");
         Err(v.error(what).hint(format!("{key} = {}   (at most {})", default * per_s, most_s * per_s)))
     };
     Ok(CooperationSettings {
