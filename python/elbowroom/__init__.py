@@ -8,9 +8,9 @@ Joint values are `(N, dof)` arrays of float64, radians for joints that turn and 
 state. Lengths are metres, times seconds. For a cell the robots stand side by side in the order of the file.
 """
 
-from elbowroom._elbowroom import Cell, Checker, Robot, __version__, plan
+from elbowroom._elbowroom import Cell, Checker, ReachQuery, Robot, __version__, plan
 from elbowroom.errors import ArgumentError, ArrayError, Error, FileError
-from elbowroom.results import JointMap, Path, Run, Trace, Witness
+from elbowroom.results import JointMap, Path, Reach, Run, Trace, Witness
 
 __all__ = [
     "ArgumentError",
@@ -21,6 +21,8 @@ __all__ = [
     "FileError",
     "JointMap",
     "Path",
+    "Reach",
+    "ReachQuery",
     "Robot",
     "Run",
     "Trace",

@@ -5,9 +5,9 @@ import numpy as np
 import numpy.typing as npt
 
 from elbowroom.poses import PoseLike
-from elbowroom.results import JointMap, Path, Run, Trace, Witness
+from elbowroom.results import JointMap, Path, Reach, Run, Trace, Witness
 
-__all__ = ["Cell", "Checker", "Robot", "RunRecord", "__version__", "plan"]
+__all__ = ["Cell", "Checker", "ReachQuery", "Robot", "RunRecord", "__version__", "plan"]
 
 _States = npt.NDArray[np.float64]
 
@@ -75,6 +75,18 @@ class Checker:
     def distance(self, q: _States) -> npt.NDArray[np.float64]: ...
     def within(self, q: _States, tolerance_m: float) -> npt.NDArray[np.bool_]: ...
     def witness(self, q: _States) -> Witness: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+
+@final
+class ReachQuery:
+    def __new__(
+        cls, source: Robot | Cell, robot: str | None = None, *, turns: int = 1, threads: int | None = None
+    ) -> ReachQuery: ...
+    @property
+    def joints(self) -> list[str]: ...
+    @property
+    def base(self) -> npt.NDArray[np.float64]: ...
+    def evaluate(self, targets: npt.NDArray[np.float64], base: PoseLike | None = None) -> Reach: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final

@@ -67,3 +67,13 @@ def reduced_cell(path: Path) -> _Reduced:
 def reduced_checker(source: Any, level: str, between: str | None, threads: int | None) -> _Reduced:
     """Return what a pickle of a checker has."""
     return checker, (source, level, between, threads)
+
+
+def reach(source: Any, robot: str | None, turns: int, threads: int | None) -> _elbowroom.ReachQuery:
+    """Make a pickled query of reach."""
+    return _elbowroom.ReachQuery(source, robot, turns=turns, threads=threads)
+
+
+def reduced_reach(source: Any, robot: str | None, turns: int, threads: int | None) -> _Reduced:
+    """Return what a pickle of a query of reach has."""
+    return reach, (source, robot, turns, threads)

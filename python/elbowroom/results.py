@@ -15,7 +15,7 @@ from elbowroom.errors import ArgumentError
 if TYPE_CHECKING:
     from elbowroom._elbowroom import RunRecord
 
-__all__ = ["JointMap", "Path", "Run", "Trace", "Witness"]
+__all__ = ["JointMap", "Path", "Reach", "Run", "Trace", "Witness"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +80,25 @@ class Path:
     def duration_s(self) -> float:
         """Duration of the motion."""
         return float(self.times_s[-1]) if len(self.times_s) else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Reach:
+    """How a robot reaches each target.
+
+    Attributes
+    ----------
+    solutions
+        `(N,)` uint16: number of joint states within the limits that bring the tool there; 0: out of reach.
+    free
+        `(N,)` uint16: number of those in which nothing touches.
+    q
+        `(N, dof)`, rad or m: of these the nearest to the state at the start; NaN without one.
+    """
+
+    solutions: npt.NDArray[np.uint16]
+    free: npt.NDArray[np.uint16]
+    q: npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

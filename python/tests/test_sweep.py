@@ -24,6 +24,7 @@ from hypothesis import strategies as st
 import elbowroom as er
 from conftest import ROOT
 from elbowroom import sweep
+from elbowroom.poses import matrix as elbowroom_matrix
 from elbowroom.sweep import driver
 from elbowroom.sweep.shard import Job, compute
 from elbowroom.sweep.states import Grid, Random, Sobol, States, Table
@@ -63,11 +64,11 @@ def test_the_answers_are_those_of_the_checker(tmp_path: Path) -> None:
     asked = task(tmp_path / "out", Random(1100, 5))
     result = sweep.run(asked)
     found = columns(result)
-    checker = asked.checker()
+    checker = er.Checker(er.Robot.load(RX60B))
     q = Random(1100, 5).rows(0, 1100, checker.limits)
     expected = checker.witness(q)
     assert (found["index"] == np.arange(1100)).all()
-    assert (found["collides"] == checker.collides(q)).all() and result.colliding == found["collides"].sum() > 50
+    assert (found["collides"] == checker.collides(q)).all() and result.counts["collides"] == found["collides"].sum() > 50
     assert (found["distance_m"] <= expected.distance_m).all()
     assert np.allclose(found["distance_m"], expected.distance_m, rtol=2e-7, atol=0)
     assert found["a"].tolist() == expected.a and found["b"].tolist() == expected.b
@@ -77,6 +78,85 @@ def test_the_answers_are_those_of_the_checker(tmp_path: Path) -> None:
     assert {file: file.stat().st_mtime_ns for file in result.folder.glob("part-*")} == before
     alone = sweep.run(replace(asked, ask="collision", out=tmp_path / "collision", shard_rows=333))
     assert (columns(alone)["collides"] == found["collides"]).all() and set(columns(alone)) == {"index", "collides"}
+
+
+def turned_and_squared(checker: er.Checker, q: npt.NDArray[np.float64]) -> dict[str, Any]:
+    return {"free": ~checker.collides(q), "norm": np.sum(q * q, axis=1), "name": [f"{row[0]:.1f}" for row in q]}
+
+
+def test_a_tolerance_and_a_function_of_ones_own(tmp_path: Path) -> None:
+    checker = er.Checker(er.Robot.load(RX60B))
+    q = Random(900, 5).rows(0, 900, checker.limits)
+    near = sweep.run(task(tmp_path / "near", Random(900, 5), ask="tolerance", tolerance_m=0.05))
+    assert (columns(near)["within"] == checker.within(q, 0.05)).all() and near.counts["within"] > 10
+    own = sweep.run(task(tmp_path / "own", Random(900, 5), ask=turned_and_squared))
+    found = columns(own)
+    assert (found["free"] == ~checker.collides(q)).all() and own.counts["free"] == found["free"].sum()
+    assert own.least["norm"] == np.sum(q * q, axis=1).min() and found["name"][3] == f"{q[3, 0]:.1f}"
+    with pytest.raises(er.ArrayError, match="the column `a` has the shape 3"):
+        sweep.run(task(tmp_path / "short", Random(900), ask=lambda _, q: {"a": [None] * 3}))
+    with pytest.raises(er.ArgumentError, match="a dict of columns"):
+        sweep.run(task(tmp_path / "none", Random(900), ask=lambda _, q: np.zeros(len(q))))
+
+
+def placements(folder: Path, cell: Path, **others: Any) -> sweep.Task:
+    rng = np.random.default_rng(4)
+    points = rng.uniform([-0.4, -0.25, 0.42], [0.4, 0.25, 0.6], (30, 3))
+    np.save(folder / "spots.npy", np.hstack([points, np.tile([0.0, 0.0, -1.0], (30, 1))]))
+    bases = sweep.BaseGrid(x_m=(-1.0, 0.6, 3), y_m=(-1.3, -0.9, 2), yaw_rad=(0.0, np.pi, 3))
+    rows = sweep.Placements(bases, folder / "spots.npy", "left", turns=4)
+    return sweep.Task(cell, rows, folder / "out", **{"shard_rows": 47} | others)
+
+
+def test_places_of_a_base_are_compared(tmp_path: Path, exchange: Path) -> None:
+    asked = placements(tmp_path, exchange)
+    result = sweep.run(asked)
+    query, targets = er.ReachQuery(er.Cell.load(exchange), "left", turns=4), np.load(tmp_path / "spots.npy")
+    found, placement = columns(result), result.placement()
+    assert result.rows == 18 * 30 and len(placement.bases) == 18 and placement.targets == 30
+    for place in range(18):
+        base = (placement.bases[place, :3], placement.bases[place, 3:])
+        direct = query.evaluate(targets, base)
+        rows = slice(30 * place, 30 * place + 30)
+        assert (found["free"][rows] == direct.free).all() and (found["solutions"][rows] == direct.solutions).all()
+        counts = [placement.in_reach[place], placement.reached[place], placement.states[place]]
+        assert counts == [(direct.solutions > 0).sum(), (direct.free > 0).sum(), direct.free.sum()]
+    assert placement.reached[placement.best(1)[0]] == placement.reached.max() > placement.reached.min()
+    # Cut in another way, and places from a table.
+    np.save(tmp_path / "bases.npy", placement.bases)
+    table = replace(placements(tmp_path, exchange), out=tmp_path / "table", shard_rows=500)
+    places = sweep.Placements(sweep.BaseTable(tmp_path / "bases.npy"), tmp_path / "spots.npy", "left", turns=4)
+    table = replace(table, states=places)
+    assert (columns(sweep.run(table))["free"] == found["free"]).all()
+
+
+def test_a_base_that_turns_keeps_its_place_in_a_table() -> None:
+    present = np.eye(4)
+    present[:3, :3] = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]
+    grid = sweep.BaseGrid(x_m=(0.0, 1.0, 2), z_m=(0.5, 0.5, 1), yaw_rad=(-3.0, 3.0, 7))
+    for number, row in enumerate(grid.table(present)):
+        x, y, z, w = row[3:]
+        turn = np.array(elbowroom_matrix((row[:3], (x, y, z, w))))
+        assert np.allclose(turn, grid.pose(number, present), atol=1e-12)
+    assert grid.count() == 14 and grid.pose(13, present)[:3, 3].tolist() == [1.0, 0.0, 0.5]
+
+
+def test_pictures_show_states_and_places(tmp_path: Path, exchange: Path) -> None:
+    pytest.importorskip("matplotlib", reason="skipped: no matplotlib")
+    grid = sweep.run(task(tmp_path / "grid", Grid((1, 9, 7, 1, 2, 1))))
+    figure = grid.picture(tmp_path / "grid.png", axes=(er.Robot.load(RX60B).joints[1], er.Robot.load(RX60B).joints[2]))
+    image = figure.axes[0].get_images()[0].get_array()
+    distances = columns(grid)["distance_m"].reshape(9, 7, 2).min(axis=2)
+    assert image is not None and np.allclose(image, 1e3 * distances.T)
+    assert (tmp_path / "grid.png").stat().st_size > 5000
+    assert sweep.run(task(tmp_path / "sobol", Sobol(2000), ask="collision")).picture().axes
+    with pytest.raises(er.ArgumentError, match="there is no joint 'x'"):
+        grid.picture(axes=("x", "y"))
+    places = sweep.run(placements(tmp_path, exchange))
+    shares = places.picture(tmp_path / "places.svg").axes[0].collections[0].get_array()
+    assert shares is not None and shares.max() == pytest.approx(100 * places.placement().reached.max() / 30)
+    with pytest.raises(er.ArgumentError, match="no places of a base"):
+        grid.placement()
 
 
 def test_a_table_of_states_and_a_cell(tmp_path: Path, exchange: Path) -> None:
@@ -210,6 +290,14 @@ def test_an_interrupted_command_says_how_it_goes_on(tmp_path: Path) -> None:
         ("", "the model is missing"),
         ('cell = "a"\nrobot = "b"', "there are two"),
         ('cell = "a"', r"write: \[states\]"),
+        ('cell = "a"\n[reach]\ntargets = "t"', "the states are missing"),
+        ('cell = "a"\n[reach]\nturns = 2\n[bases]\nkind = "grid"', "`targets` is missing"),
+        ('cell = "a"\n[reach]\ntargets = "t"\n[bases]\nkind = "ring"', "one of grid, table"),
+        ('cell = "a"\n[reach]\ntargets = "t"\n[bases]\nkind = "grid"\nx_m = [0, 1]', "first value, last value and how many"),
+        ('cell = "a"\n[reach]\ntargets = "t"\n[bases]\nkind = "grid"\nx = [0, 1, 2]', "`x` is not a key of these bases"),
+        ('cell = "a"\nask = "distance"\n[reach]\ntargets = "t"\n[bases]\nkind = "grid"', "`ask` does not fit"),
+        ('cell = "a"\nask = "reach"\n[states]\nkind = "random"\nrows = 1', "`ask` does not fit"),
+        ('cell = "a"\ntolerance_m = -1\n[states]\nkind = "random"\nrows = 1', "`tolerance_m` is -1"),
         ('cell = "a"\nshard_row = 1\n[states]\nkind = "random"', "`shard_row` is not a key of a task"),
         ('cell = "a"\n[states]\nkind = "rand"', "one of random, sobol, grid, table"),
         ('cell = "a"\n[states]\nkind = "random"\nrows = -1', "`rows` is -1"),
@@ -235,7 +323,7 @@ def test_the_command_hands_over(command: Path, tmp_path: Path) -> None:
     file = written(tmp_path, 700)
     env = os.environ | {"ELBOWROOM_PYTHON": sys.executable}
     run = subprocess.run([command, "sweep", file, "--out", tmp_path / "out"], env=env, capture_output=True, text=True)
-    assert run.returncode == 0 and "700 states" in run.stdout, run.stderr
+    assert run.returncode == 0 and "700 rows" in run.stdout, run.stderr
     assert sweep.Result.load(tmp_path / "out").sha256 in run.stdout
     file.write_text("cell = 1\n[states]")
     run = subprocess.run([command, "sweep", file], env=env, capture_output=True, text=True)
@@ -279,7 +367,7 @@ def test_workers_and_machines_that_die_lose_nothing(tmp_path: Path, cluster: Any
     def kill() -> None:
         nonlocal killed
         for parts in (2, 8):
-            wait_for_parts(asked.out, parts)
+            wait_for_parts(tmp_path / "ray", parts)
             killed += kill_a_worker()
         cluster.remove_node(machine, allow_graceful=False)
 
@@ -288,4 +376,4 @@ def test_workers_and_machines_that_die_lose_nothing(tmp_path: Path, cluster: Any
     result = sweep.run(asked, executor="ray")
     killer.join()
     assert result.sha256 == expected.sha256 and result.rows == 8_000 and killed > 0
-    assert result.colliding == expected.colliding
+    assert result.counts == expected.counts

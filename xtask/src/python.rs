@@ -14,11 +14,13 @@ pub const HYPOTHESIS: &str = "hypothesis==6.170.17";
 pub const PYARROW: &str = "pyarrow==26.0.1";
 /// The cluster of sweeps.
 pub const RAY: &str = "ray==2.60.0";
+/// Pictures of sweeps.
+pub const MATPLOTLIB: &str = "matplotlib==3.11.2";
 /// Sequences of states of sweeps.
 pub const SCIPY: &str = "scipy==1.17.1";
 
 /// Pinned, so that a test compares with the same reference everywhere.
-const PACKAGES: [&str; 11] = [
+const PACKAGES: [&str; 12] = [
     "pin==4.1.0",
     "numpy==2.4.6",
     "mcap==1.6.0",
@@ -30,6 +32,7 @@ const PACKAGES: [&str; 11] = [
     PYARROW,
     RAY,
     SCIPY,
+    MATPLOTLIB,
 ];
 
 /// Checks that the pinned versions are installed.
@@ -38,7 +41,8 @@ from importlib.metadata import version
 assert pinocchio.__version__ == '4.1.0' and numpy.__version__ == '2.4.6'
 assert (version('mcap'), version('mcap-ros2-support'), version('rosbags')) == ('1.6.0', '0.6.0', '0.11.9')
 assert (version('pytest'), version('hypothesis'), version('mypy')) == ('9.2.0', '6.170.17', '2.4.1')
-assert (version('pyarrow'), version('ray'), version('scipy')) == ('26.0.1', '2.60.0', '1.17.1')";
+assert (version('pyarrow'), version('ray'), version('scipy')) == ('26.0.1', '2.60.0', '1.17.1')
+assert version('matplotlib') == '3.11.2'";
 
 /// Path of the interpreter inside `target/venv`, whether or not it exists.
 pub fn interpreter(root: &Path) -> PathBuf {

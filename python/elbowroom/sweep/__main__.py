@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import sys
 from pathlib import Path
 
 from elbowroom.errors import Error
-from elbowroom.sweep import Task, run
+from elbowroom.sweep import Result, Task, run
 
 
 def main() -> int:
@@ -25,8 +26,19 @@ def main() -> int:
     except KeyboardInterrupt:
         print("\nstopped: the same command goes on where it was", file=sys.stderr)
         return 130
-    print(result)
+    _tell(result)
     return 0
+
+
+def _tell(result: Result) -> None:
+    """Print the result, and draw it where matplotlib is installed."""
+    print(result)
+    if "bases" in result.manifest()["about"]:
+        print(result.placement())
+    if importlib.util.find_spec("matplotlib"):
+        picture = result.folder / "summary.png"
+        result.picture(picture)
+        print(f"picture: {picture}")
 
 
 if __name__ == "__main__":

@@ -45,12 +45,12 @@ def run(
     chosen = executor or task.executor
     if chosen not in ("local", "ray"):
         raise ArgumentError(f"`executor` is {chosen!r}\n  write: local or ray")
-    folder = (Path(out) if out is not None else task.out).resolve()
-    checker = task.checker()
-    identity = task.identity(checker)
-    total = task.states.count(checker.limits)
+    folder = Path(task.out if out is None else out).resolve()
+    question = task.question()
+    identity = task.identity(question)
+    total = question.count()
     job = Job(task, digest(identity), identity["fingerprint"], folder, total)
-    remember(job, checker)
+    remember(job, question)
     with _alone(folder):
         # What it says is true of finished sweeps only.
         (folder / MANIFEST).unlink(missing_ok=True)
@@ -62,7 +62,7 @@ def run(
             found[part.first // task.shard_rows] = part
             line.add(part.rows)
         line.end()
-        return finish(folder, identity, list(found.values()))
+        return finish(folder, identity, question, list(found.values()))
 
 
 def _finished(job: Job) -> dict[int, Part]:

@@ -11,44 +11,51 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from elbowroom.errors import Error
 from elbowroom.sweep.extras import imported
+from elbowroom.sweep.questions import Column
 
 _KEY = b"elbowroom.sweep"
 
 
 @dataclass(frozen=True)
-class Answers:
-    """The answers about the states of a shard."""
-
-    collides: npt.NDArray[np.bool_]
-    distance_m: npt.NDArray[np.float32] | None = None
-    a: list[str | None] | None = None
-    b: list[str | None] | None = None
-
-    def sha256(self, first: int) -> str:
-        """Return the SHA-256 of the answers and of the number of the first state, in hex."""
-        content = hashlib.sha256(f"{first} {len(self.collides)} ".encode())
-        content.update(self.collides.tobytes())
-        if self.distance_m is not None:
-            content.update(self.distance_m.astype("<f4").tobytes())
-        for names in (self.a, self.b):
-            content.update(json.dumps(names).encode())
-        return content.hexdigest()
-
-
-@dataclass(frozen=True)
 class Part:
-    """What the footer of a part says."""
+    """What the footer of a part says.
+
+    Attributes
+    ----------
+    task
+        The digest of the task.
+    first, rows
+        The number of the first row, and of all rows.
+    counts
+        By column of numbers: how many rows are not 0.
+    least
+        By column of floats: the least finite value; `None` without one.
+    sha256
+        A hash of the answers, in hex.
+    """
 
     task: str
     first: int
     rows: int
-    colliding: int
-    least_distance_m: float | None
+    counts: dict[str, int]
+    least: dict[str, float | None]
     sha256: str
+
+    @staticmethod
+    def of(task: str, first: int, rows: int, columns: dict[str, Column]) -> Part:
+        """Return the footer of answers."""
+        arrays = {name: values for name, values in columns.items() if isinstance(values, np.ndarray)}
+        counts = {name: int(np.count_nonzero(values)) for name, values in arrays.items() if values.dtype.kind in "bui"}
+        floats = {name: values[np.isfinite(values)] for name, values in arrays.items() if values.dtype.kind == "f"}
+        least = {name: float(values.min()) if len(values) else None for name, values in floats.items()}
+        content = hashlib.sha256(f"{first} {rows} ".encode())
+        for name, values in columns.items():
+            content.update(name.encode() + b" ")
+            content.update(values.tobytes() if isinstance(values, np.ndarray) else json.dumps(values).encode())
+        return Part(task, first, rows, counts, least, content.hexdigest())
 
 
 def path(folder: Path, shard: int) -> Path:
@@ -56,35 +63,20 @@ def path(folder: Path, shard: int) -> Path:
     return folder / f"part-{shard:06}.parquet"
 
 
-def write(file: Path, task: str, first: int, answers: Answers) -> Part:
+def write(file: Path, task: str, first: int, rows: int, columns: dict[str, Column]) -> Part:
     """Write a part: first under another name, which becomes its name when everything is on the disk."""
     pa, pq = imported("pyarrow", "pyarrow"), imported("pyarrow.parquet", "pyarrow")
-    distance_m = answers.distance_m
-    finite = distance_m[np.isfinite(distance_m)] if distance_m is not None else np.empty(0, np.float32)
-    part = Part(
-        task=task,
-        first=first,
-        rows=len(answers.collides),
-        colliding=int(answers.collides.sum()),
-        least_distance_m=float(finite.min()) if len(finite) else None,
-        sha256=answers.sha256(first),
-    )
-    columns: dict[str, Any] = {
-        "index": pa.array(np.arange(first, first + part.rows, dtype=np.int64)),
-        "collides": pa.array(answers.collides),
-    }
-    if distance_m is not None:
-        columns["distance_m"] = pa.array(distance_m)
-        columns["a"] = pa.array(answers.a, pa.string()).dictionary_encode()
-        columns["b"] = pa.array(answers.b, pa.string()).dictionary_encode()
-    table = pa.table(columns)
-    table = table.replace_schema_metadata({_KEY: json.dumps(asdict(part)).encode()})
+    part = Part.of(task, first, rows, columns)
+    names = [name for name, values in columns.items() if isinstance(values, list)]
+    table: dict[str, Any] = {"index": pa.array(np.arange(first, first + rows, dtype=np.int64))}
+    for name, values in columns.items():
+        table[name] = pa.array(values, pa.string()).dictionary_encode() if name in names else pa.array(values)
+    content = pa.table(table).replace_schema_metadata({_KEY: json.dumps(asdict(part)).encode()})
     # Two workers may compute one shard, if a cluster takes one of them for dead: each has a name of its own.
     unfinished = file.with_name(f"{file.name}.{uuid.uuid4().hex}.tmp")
     encodings = {"index": "DELTA_BINARY_PACKED"}
-    dictionaries = [name for name in ("a", "b") if name in columns]
     with unfinished.open("wb") as out:
-        pq.write_table(table, out, compression="zstd", use_dictionary=dictionaries, column_encoding=encodings)
+        pq.write_table(content, out, compression="zstd", use_dictionary=names, column_encoding=encodings)
         out.flush()
         os.fsync(out.fileno())
     os.replace(unfinished, file)

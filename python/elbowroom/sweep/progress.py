@@ -25,7 +25,7 @@ class Progress:
             self._shown = now
             rate = (self._done - self._before) / max(now - self._begun, 1e-9)
             left = (self._rows - self._done) / max(rate, 1e-9)
-            text = f"\r{self._done:,} of {self._rows:,} states, {rate:,.0f} per second, {_duration(left)} left"
+            text = f"\r{self._done:,} of {self._rows:,} rows, {rate:,.0f} per second, {_duration(left)} left"
             print(f"{text:<78}", end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:

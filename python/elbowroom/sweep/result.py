@@ -7,17 +7,24 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from elbowroom.errors import FileError
+from elbowroom.errors import ArgumentError, FileError
 from elbowroom.sweep import parts
 from elbowroom.sweep.extras import imported
 from elbowroom.sweep.parts import Part
+from elbowroom.sweep.placement import Placement
+from elbowroom.sweep.questions import Question
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MANIFEST = "manifest.json"
+
+_WORDS = {"collides": "colliding", "within": "within", "solutions": "in reach", "free": "without contact"}
 
 
 @dataclass(frozen=True)
@@ -28,30 +35,31 @@ class Result:
     ----------
     folder
         The folder with the parts and `manifest.json`.
-    rows, colliding
-        Numbers of states, and of those in which something collides.
-    least_distance_m
-        The least distance of all states; `None` if it was not asked.
+    rows
+        Number of states, or of pairs of a place and a target.
+    counts
+        By column: number of rows in which it is not 0 or false.
+    least
+        By column of floats: the least finite value; `None` without one.
     sha256
         A hash of all answers, in hex: the same wherever and in whatever order shards of this size were computed.
     """
 
     folder: Path
     rows: int
-    colliding: int
-    least_distance_m: float | None
+    counts: dict[str, int]
+    least: dict[str, float | None]
     sha256: str
 
     @staticmethod
     def load(folder: str | Path) -> Result:
         """Read the manifest of a finished sweep."""
-        file = Path(folder) / MANIFEST
+        folder = Path(folder)
+        table = _manifest(folder)
         try:
-            table = json.loads(file.read_text(encoding="utf-8"))
-            return Result(file.parent, *(table[key] for key in ("rows", "colliding", "least_distance_m", "sha256")))
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            hint = "the folder of a finished sweep"
-            raise FileError(f"{file}: {error}\n  write: {hint}", str(file), None, str(error), hint) from error
+            return Result(folder, *(table[key] for key in ("rows", "counts", "least", "sha256")))
+        except KeyError as error:
+            raise _refused(folder, error) from error
 
     def batches(self) -> Iterator[dict[str, npt.NDArray[Any]]]:
         """Return the columns of one part after another, as NumPy arrays."""
@@ -60,33 +68,92 @@ class Result:
             table = pq.read_table(file)
             yield {name: np.asarray(table[name].to_numpy()) for name in table.column_names}
 
+    def manifest(self) -> dict[str, Any]:
+        """Return `manifest.json`: the task, the columns with their units, and the parts."""
+        return _manifest(self.folder)
+
+    def placement(self) -> Placement:
+        """Return what is reached from each place of the base.
+
+        Raises
+        ------
+        ArgumentError
+            If the sweep asked something else.
+        """
+        about = self.manifest()["about"]
+        if "bases" not in about:
+            raise ArgumentError("the sweep has no places of a base\n  write: a task with [reach] and [bases]")
+        return Placement.of(np.array(about["bases"]).reshape(-1, 7), about["targets"], self.batches())
+
+    def picture(self, file: str | Path | None = None, axes: tuple[str, str] | None = None) -> Figure:
+        """Draw a map of the answers: over two joints, or over the places of the base.
+
+        Parameters
+        ----------
+        file
+            A PNG, SVG or PDF file to write.
+        axes
+            The names of two joints; default: the second and the third.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        from elbowroom.sweep import pictures
+
+        figure = pictures.draw(self, axes)
+        if file is not None:
+            figure.savefig(file, dpi=120)
+        return figure
+
     def __str__(self) -> str:
-        """Return three lines for people."""
-        least = "" if self.least_distance_m is None else f"\n  nearest   {1e3 * self.least_distance_m:.3f} mm"
-        share = 100 * self.colliding / max(1, self.rows)
-        return f"{self.rows:,} states in {self.folder}\n  colliding {self.colliding:,} ({share:.2f} %){least}\n  sha256    {self.sha256}"
+        """Return some lines for people."""
+        lines = [f"{self.rows:,} rows in {self.folder}"]
+        for name, count in self.counts.items():
+            lines.append(f"{_WORDS.get(name, name):<15} {count:,} ({100 * count / max(1, self.rows):.2f} %)")
+        for name, value in self.least.items():
+            if value is not None:
+                lines.append(f"nearest         {1e3 * value:.3f} mm" if name == "distance_m" else f"least {name} {value:g}")
+        return "\n  ".join([*lines, f"sha256          {self.sha256}"])
 
 
-def finish(folder: Path, identity: dict[str, Any], found: list[Part]) -> Result:
+def _manifest(folder: Path) -> dict[str, Any]:
+    try:
+        table: dict[str, Any] = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        return table
+    except (OSError, ValueError) as error:
+        raise _refused(folder, error) from error
+
+
+def _refused(folder: Path, error: Exception) -> FileError:
+    file, hint = folder / MANIFEST, "the folder of a finished sweep"
+    return FileError(f"{file}: {error}\n  write: {hint}", str(file), None, str(error), hint)
+
+
+def finish(folder: Path, identity: dict[str, Any], question: Question, found: list[Part]) -> Result:
     """Write the manifest of a sweep whose parts are all there."""
     found = sorted(found, key=lambda part: part.first)
-    least = [part.least_distance_m for part in found if part.least_distance_m is not None]
     content = hashlib.sha256("".join(part.sha256 for part in found).encode()).hexdigest()
-    rows, colliding = sum(part.rows for part in found), sum(part.colliding for part in found)
-    result = Result(folder, rows, colliding, min(least) if least else None, content)
-    units = {"index": "number of the state, from 0", "collides": "bool"}
-    if identity["ask"] == "distance":
-        units |= {"distance_m": "m, rounded down to single precision", "a": "name", "b": "name"}
+    counts: dict[str, int] = {}
+    least: dict[str, float | None] = {}
+    for part in found:
+        for name, count in part.counts.items():
+            counts[name] = counts.get(name, 0) + count
+        for name, value in part.least.items():
+            known = [v for v in (least.get(name), value) if v is not None]
+            least[name] = min(known) if known else None
+    result = Result(folder, sum(part.rows for part in found), counts, least, content)
     document = {
         "version": 1,
         "task": identity,
-        "rows": rows,
-        "colliding": colliding,
-        "least_distance_m": result.least_distance_m,
+        "about": question.about(),
+        "rows": result.rows,
+        "counts": counts,
+        "least": least,
         "sha256": content,
-        "columns": units,
+        "columns": {"index": "number of the row, from 0"} | question.units,
         "parts": [
-            {"file": parts.path(folder, i).name, "first": p.first, "rows": p.rows, "colliding": p.colliding, "sha256": p.sha256}
+            {"file": parts.path(folder, i).name, "first": p.first, "rows": p.rows, "counts": p.counts, "sha256": p.sha256}
             for i, p in enumerate(found)
         ],
     }

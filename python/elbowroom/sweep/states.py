@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from elbowroom.errors import ArgumentError, ArrayError, FileError
+from elbowroom.errors import ArgumentError, ArrayError
 from elbowroom.sweep.extras import imported
+from elbowroom.sweep.tables import finite, read
 
 Values = npt.NDArray[np.float64]
 
@@ -134,23 +135,9 @@ class Table(States):
 
     file: Path
 
-    def _values(self) -> Values:
-        try:
-            values: Values = np.load(self.file, mmap_mode="r", allow_pickle=False)
-            if not isinstance(values, np.ndarray):
-                raise ValueError("several arrays")
-        except (OSError, ValueError, EOFError) as error:
-            hint = "a file that numpy.save has written"
-            text = f"{self.file}: cannot be read: {error}\n  write: {hint}"
-            raise FileError(text, str(self.file), None, str(error), hint) from error
-        if values.ndim != 2 or values.dtype != np.float64:
-            text = f"{self.file}: an array of {values.dtype} with shape {values.shape}\n  write: (N, dof) of float64"
-            raise ArrayError(text)
-        return values
-
     def count(self, limits: Values) -> int:
         """Return the number of rows."""
-        rows, columns = self._values().shape
+        rows, columns = read(self.file).shape
         if columns != len(limits):
             text = f"{self.file}: {columns} columns, the model has {len(limits)} joints\n  write: one column for each joint"
             raise ArrayError(text)
@@ -158,11 +145,7 @@ class Table(States):
 
     def rows(self, first: int, count: int, limits: Values) -> Values:
         """Return rows of the file."""
-        rows = np.array(self._values()[first : first + count])
-        if not np.isfinite(rows).all():
-            row = first + int(np.argmin(np.isfinite(rows).all(axis=1)))
-            raise ArrayError(f"{self.file}: row {row} has a number that is not finite\n  write: joint values, rad or m")
-        return rows
+        return finite(self.file, read(self.file)[first : first + count], first)
 
     def files(self) -> list[Path]:
         """Return the file."""

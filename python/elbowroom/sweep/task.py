@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,14 +16,42 @@ import numpy as np
 
 from elbowroom import _elbowroom
 from elbowroom.errors import ArgumentError, FileError
+from elbowroom.sweep.bases import BaseGrid, Bases, BaseTable
+from elbowroom.sweep.questions import ASK, Function, Question, ReachQuestion, StateQuestion, name_of
 from elbowroom.sweep.states import Grid, Random, Sobol, States, Table
+from elbowroom.sweep.tables import finite, read
 
-_KEYS = ("version", "cell", "robot", "srdf", "ask", "level", "between", "shard_rows", "executor", "out", "states")
-_ASK = ("collision", "distance")
+_KEYS = (
+    "version", "cell", "robot", "srdf", "ask", "tolerance_m", "level", "between", "shard_rows", "executor", "out", "states", "reach",
+    "bases",
+)  # fmt: skip
+_TEXTS = ("cell", "robot", "srdf", "ask", "level", "between", "executor", "out")
 _EXECUTORS = ("local", "ray")
 _LARGEST_SHARD = 10_000_000
-# States whose answers are compared to tell whether two models are one.
-_PROBES = 256
+
+
+@dataclass(frozen=True)
+class Placements:
+    """Targets that a robot shall reach from places of its base.
+
+    Parameters
+    ----------
+    bases
+        The places: `BaseGrid` or `BaseTable` of `elbowroom.sweep.bases`.
+    targets
+        NumPy file of targets: `(N, 7)` or `(N, 6)` as for `elbowroom.ReachQuery.evaluate`.
+    robot, turns
+        As for `elbowroom.ReachQuery`.
+    """
+
+    bases: Bases
+    targets: Path
+    robot: str | None = None
+    turns: int = 1
+
+    def files(self) -> list[Path]:
+        """Return the files of targets and places."""
+        return [self.targets, *self.bases.files()]
 
 
 @dataclass(frozen=True)
@@ -34,7 +63,7 @@ class Task:
     model
         A cell file, or the file of a robot.
     states
-        The states: `Random`, `Sobol`, `Grid` or `Table` of `elbowroom.sweep.states`.
+        The states: `Random`, `Sobol`, `Grid` or `Table` of `elbowroom.sweep.states`; or `Placements` of a robot.
     out
         Folder of the parts and the manifest.
     is_cell
@@ -42,7 +71,10 @@ class Task:
     srdf
         Pairs of a robot that are not compared.
     ask
-        `"collision"`, or `"distance"`, which also names the nearest pair.
+        `"collision"`; `"distance"`, which also names the nearest pair; `"tolerance"`; or a function of a `Checker` and `(N, dof)`
+        states that returns columns of N values by name. On a cluster it is pickled. Of placements it is always `"reach"`.
+    tolerance_m
+        The distance of `"tolerance"`, metres.
     level, between
         As for `elbowroom.Checker`.
     shard_rows
@@ -51,12 +83,13 @@ class Task:
         `"local"`, or `"ray"`.
     """
 
-    model: Path
-    states: States
-    out: Path
+    model: str | Path
+    states: States | Placements
+    out: str | Path
     is_cell: bool = True
-    srdf: Path | None = None
-    ask: str = "distance"
+    srdf: str | Path | None = None
+    ask: str | Function | None = None
+    tolerance_m: float = 0.0
     level: str = "auto"
     between: str | None = None
     shard_rows: int = 100_000
@@ -64,7 +97,12 @@ class Task:
 
     def __post_init__(self) -> None:
         """Refuse values that are not possible."""
-        _chosen("ask", self.ask, _ASK)
+        if not callable(self.asked):
+            _chosen("ask", self.asked, ASK)
+        if isinstance(self.states, Placements) != (self.asked == "reach"):
+            raise ArgumentError('`ask` does not fit\n  write: ask = "reach" with placements, something else with states')
+        if not (0.0 <= self.tolerance_m < math.inf):
+            raise ArgumentError(f"`tolerance_m` is {self.tolerance_m}\n  write: metres, 0 or more, as 0.02")
         _chosen("executor", self.executor, _EXECUTORS)
         if not 1 <= self.shard_rows <= _LARGEST_SHARD:
             text = f"`shard_rows` is {self.shard_rows}\n  write: a number of states from 1 to {_LARGEST_SHARD}, as 100000"
@@ -90,39 +128,49 @@ class Task:
             message, _, hint = str(error).partition("\n  write: ")
             raise _refused(file, message, hint) from error
 
-    def checker(self, threads: int | None = None) -> _elbowroom.Checker:
-        """Load the model and make its checker."""
+    @property
+    def asked(self) -> str | Function:
+        """What is asked."""
+        return self.ask or ("reach" if isinstance(self.states, Placements) else "distance")
+
+    def question(self, threads: int | None = None) -> Question:
+        """Load the model."""
         source: _elbowroom.Cell | _elbowroom.Robot
         source = _elbowroom.Cell.load(self.model) if self.is_cell else _elbowroom.Robot.load(self.model, self.srdf)
-        return _elbowroom.Checker(source, level=self.level, between=self.between, threads=threads)
+        if isinstance(self.states, Placements):
+            placed = self.states
+            query = _elbowroom.ReachQuery(source, placed.robot, turns=placed.turns, threads=threads)
+            targets = finite(placed.targets, read(placed.targets, (6, 7)))
+            if not (len(targets) and placed.bases.count()):
+                raise ArgumentError("there is no target or no place of the base\n  write: one or more of each")
+            return ReachQuestion(query, placed.bases, np.ascontiguousarray(targets))
+        checker = _elbowroom.Checker(source, level=self.level, between=self.between, threads=threads)
+        return StateQuestion(checker, self.states, self.asked, self.tolerance_m)
 
-    def identity(self, checker: _elbowroom.Checker) -> dict[str, Any]:
+    def identity(self, question: Question) -> dict[str, Any]:
         """Return what the answers depend on. Parts of one sweep have the same; where the work is done does not count."""
-        states = {key: str(value) if isinstance(value, Path) else value for key, value in vars(self.states).items()}
         return {
             "elbowroom": _elbowroom.__version__,
-            "model": self.model.name,
-            "fingerprint": fingerprint(checker),
+            "model": Path(self.model).name,
+            "fingerprint": question.fingerprint(),
             "files": [checksum(file) for file in self.states.files()],
-            "states": {"kind": type(self.states).__name__.lower(), **states},
-            "ask": self.ask,
+            "states": _plain(self.states),
+            "ask": name_of(self.asked),
+            "tolerance_m": self.tolerance_m,
             "level": self.level,
             "between": self.between,
             "shard_rows": self.shard_rows,
         }
 
 
-def fingerprint(checker: _elbowroom.Checker) -> str:
-    """Return a hash, in hex, of what a model answers about some states of its own.
-
-    A model is many files, on each machine. Two that answer alike to the bit, with nearest points, are taken for one.
-    """
-    q = Random(_PROBES, 1).rows(0, _PROBES, checker.limits)
-    found = checker.witness(q)
-    content = hashlib.sha256(json.dumps([checker.joints, found.a, found.b]).encode())
-    for values in (checker.limits, found.distance_m, found.point_a_m, found.point_b_m):
-        content.update(np.ascontiguousarray(values).tobytes())
-    return content.hexdigest()
+def _plain(states: Any) -> Any:
+    """Return states as JSON has them."""
+    if isinstance(states, Path):
+        return str(states)
+    if isinstance(states, (States, Placements, Bases)):
+        fields = {key: _plain(value) for key, value in vars(states).items()}
+        return {"kind": type(states).__name__.lower(), **fields}
+    return states
 
 
 def digest(identity: dict[str, Any]) -> str:
@@ -164,20 +212,18 @@ def _of_table(table: dict[str, Any], folder: Path, name: str) -> Task:
         raise ArgumentError(f"`version` is {table['version']!r}\n  write: version = 1")
     if ("cell" in table) == ("robot" in table):
         raise ArgumentError('the model is missing, or there are two\n  write: cell = "cell.toml", or robot = "arm.urdf"')
-    states = table.get("states")
-    if not isinstance(states, dict):
-        raise ArgumentError('the states are missing\n  write: [states] with kind = "random" and rows = 1000000')
-    text = {key: _text(table, key) for key in ("cell", "robot", "srdf", "ask", "level", "between", "executor", "out")}
+    text = {key: _text(table, key) for key in _TEXTS}
     srdf = text["srdf"]
     if srdf and "cell" in table:
         raise ArgumentError("`srdf` belongs to a robot\n  write: srdf = \"arm.srdf\" in the cell file, below [robot.NAME]")
     return Task(
         model=folder / str(text["cell"] or text["robot"]),
-        states=_states(states, folder),
+        states=_rows(table, folder),
         out=folder / (text["out"] or f"{name}-sweep"),
         is_cell="cell" in table,
         srdf=folder / srdf if srdf else None,
-        ask=text["ask"] or "distance",
+        ask=text["ask"],
+        tolerance_m=_number(table, "tolerance_m"),
         level=text["level"] or "auto",
         between=text["between"],
         shard_rows=_whole(table, "shard_rows", 100_000),
@@ -192,11 +238,52 @@ def _text(table: dict[str, Any], key: str) -> str | None:
     return value
 
 
+def _number(table: dict[str, Any], key: str) -> float:
+    value = table.get(key, 0.0)
+    if not isinstance(value, (int, float)) or isinstance(value, bool):
+        raise ArgumentError(f"`{key}` is {value!r}\n  write: a number, as {key} = 0.02")
+    return float(value)
+
+
 def _whole(table: dict[str, Any], key: str, default: int | None = None) -> int:
     value = table.get(key, default)
     if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value < 2**63:
         raise ArgumentError(f"`{key}` is {value!r}\n  write: a whole number, as {key} = 1000")
     return value
+
+
+def _rows(table: dict[str, Any], folder: Path) -> States | Placements:
+    """Return what the rows are: states, or placements."""
+    tables = {key: table[key] for key in ("states", "reach", "bases") if isinstance(table.get(key), dict)}
+    if set(tables) == {"states"}:
+        return _states(tables["states"], folder)
+    if set(tables) != {"reach", "bases"}:
+        text = 'the states are missing, or there is something else too\n  write: [states] with kind = "random" and rows = 1000000;'
+        raise ArgumentError(f"{text} or [reach] with targets = \"spots.npy\", and [bases]")
+    reach = tables["reach"]
+    _known(reach, ("robot", "targets", "turns"), "[reach]")
+    targets = _text(reach, "targets")
+    if targets is None:
+        raise ArgumentError('`targets` is missing\n  write: targets = "spots.npy", which numpy.save has written')
+    return Placements(_bases(tables["bases"], folder), folder / targets, _text(reach, "robot"), _whole(reach, "turns", 1))
+
+
+def _bases(table: dict[str, Any], folder: Path) -> Bases:
+    kind = table.get("kind")
+    _chosen("kind", kind, ("grid", "table"))
+    if kind == "table":
+        return BaseTable(folder / _file(table))
+    axes = ("x_m", "y_m", "z_m", "yaw_rad")
+    _known(table, ("kind", *axes), "these bases")
+    return BaseGrid(**{key: tuple(table[key]) if isinstance(table[key], list) else table[key] for key in axes if key in table})
+
+
+def _file(table: dict[str, Any]) -> str:
+    _known(table, ("kind", "file"), "a table")
+    file = _text(table, "file")
+    if file is None:
+        raise ArgumentError('`file` is missing\n  write: file = "states.npy", which numpy.save has written')
+    return file
 
 
 def _states(table: dict[str, Any], folder: Path) -> States:
@@ -211,11 +298,7 @@ def _states(table: dict[str, Any], folder: Path) -> States:
     if kind == "sobol":
         return sequence(Sobol)
     if kind == "table":
-        _known(table, ("kind", "file"), "a table")
-        file = _text(table, "file")
-        if file is None:
-            raise ArgumentError('`file` is missing\n  write: file = "states.npy", which numpy.save has written')
-        return Table(folder / file)
+        return Table(folder / _file(table))
     _known(table, ("kind", "steps"), "a grid")
     steps = table.get("steps")
     if not isinstance(steps, list) or not all(type(n) is int and 0 < n < 2**31 for n in steps):

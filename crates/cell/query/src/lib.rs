@@ -1,7 +1,8 @@
 //! Questions about a cell without a run: `query`, `map` and `plan`; sets of planning problems.
 //!
 //! [`evaluate`] answers collision, distance and tolerance for many joint states, [`map`] computes the blocked cells of a
-//! robot's joint space, [`plan`] finds a collision-free path and times it. All use the cell in its initial state.
+//! robot's joint space, [`plan`] finds a collision-free path and times it, [`ReachQuery`] says which places a robot reaches
+//! from which place of its base. All use the cell in its initial state.
 //! [`problems`] solves the planning problems of a file; [`watch`] detects the obstacles that a camera or a source of
 //! point clouds sees.
 //!
@@ -38,12 +39,14 @@ mod link_cells;
 pub mod map;
 pub mod plan;
 pub mod problems;
+mod reach;
 mod rows;
 pub mod watch;
 
 pub use cover_cache::CoverCache;
 pub use elbowroom_scene::Level;
 pub use link_cells::{LinkCells, blocked_by_link};
+pub use reach::{Reach, ReachQuery, ReachTarget};
 pub use rows::{
     BLOCK, ContactRecord, ContactRow, JointOvershoot, LimitRecord, LimitRow, MotionRecord, MotionRow, PairColumns,
     Query, QueryChecker, QueryEffort, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow, QueryStates,

@@ -9,6 +9,7 @@ mod plan;
 mod plan_on_map;
 mod problems;
 mod query;
+mod reach;
 mod region_constraint;
 mod several_robots;
 mod weights;

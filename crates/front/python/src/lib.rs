@@ -12,6 +12,7 @@ mod cell;
 mod checker;
 mod error;
 mod paths;
+mod reach;
 mod robot;
 mod rows;
 mod run;
@@ -25,6 +26,7 @@ fn _elbowroom(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<robot::Robot>()?;
     module.add_class::<cell::Cell>()?;
     module.add_class::<checker::Checker>()?;
+    module.add_class::<reach::ReachQuery>()?;
     module.add_class::<run::RunRecord>()?;
     module.add_function(wrap_pyfunction!(paths::plan, module)?)
 }

@@ -247,7 +247,7 @@ impl Robot {
     #[pyo3(signature = (pose, link=None))]
     fn ik<'py>(&self, pose: &Bound<'py, PyAny>, link: Option<&str>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let py = pose.py();
-        let (target, link) = (target(pose)?, self.link(link)?);
+        let (target, link) = (pose_of(pose)?, self.link(link)?);
         let solutions = py.detach(|| {
             let mut solver = IkSolver::new(self.chain(), link, Pose::IDENTITY, IkOptions::default());
             solver.solve_all(&target, &ChainState::at_rest(self.chain()).q)
@@ -269,7 +269,7 @@ impl Robot {
 }
 
 /// A pose from a 4×4 array, `(xyz, quaternion xyzw)`, or an object with `as_matrix`; the package checks it.
-fn target(pose: &Bound<'_, PyAny>) -> Result<Pose, Fault> {
+pub fn pose_of(pose: &Bound<'_, PyAny>) -> Result<Pose, Fault> {
     let rows: [[f64; 4]; 4] = pose.py().import("elbowroom.poses")?.getattr("matrix")?.call1((pose,))?.extract()?;
     let column = |i: usize| Vec3::new(rows[0][i], rows[1][i], rows[2][i]);
     let rotation = Rotation::from_columns(column(0), column(1), column(2));

@@ -6,7 +6,7 @@ use crate::package::Package;
 
 #[test]
 fn sweeps_lose_nothing_and_count_nothing_twice() {
-    if with_modules("pyarrow, ray, scipy", "pyarrow, Ray and SciPy").is_none() {
+    if with_modules("pyarrow, ray, scipy, matplotlib", "pyarrow, Ray, SciPy and matplotlib").is_none() {
         return;
     }
     let Some(package) = Package::new() else { return };

@@ -54,6 +54,7 @@ mod selection;
 mod state;
 mod stats;
 mod sweep;
+mod with_base;
 mod world_box;
 
 pub use allowed_collision_matrix::{AllowedCollisionMatrix, PairEdit, PairEntry, PairNumber, PairState, Reason};

@@ -11,6 +11,7 @@ mod first_contacts;
 mod level_of_detail;
 mod matrix;
 mod merge_robots;
+mod moved_base;
 mod out_of_reach;
 mod pair_rules;
 mod queries;

@@ -1,0 +1,112 @@
+"""Pictures of the answers of a sweep: maps of collisions, distances and reach."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from elbowroom.errors import ArgumentError
+from elbowroom.sweep.extras import imported
+from elbowroom.sweep.placement import Placement
+from elbowroom.sweep.states import Grid, Random, Sobol, States, Table, ranges
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from elbowroom.sweep.result import Result
+
+# Places along an axis of a map of states that are not a grid.
+_BINS = 48
+
+
+def draw(result: Result, axes: tuple[str, str] | None) -> Figure:
+    """Draw a map over two joints, or over the places of the base."""
+    about = result.manifest()["about"]
+    return _placement(result.placement()) if "bases" in about else _states(result, about, axes)
+
+
+def _figure() -> tuple[Figure, Any]:
+    """Make a figure that no window shows."""
+    figure: Figure = imported("matplotlib.figure", "matplotlib").Figure(figsize=(7.0, 5.6), layout="constrained")
+    return figure, figure.subplots()
+
+
+def _placement(found: Placement) -> Figure:
+    """Draw the largest share of targets reached at each x and y, with the turn of the best place."""
+    figure, plot = _figure()
+    xy, places = np.unique(found.bases[:, :2].round(9), axis=0, return_inverse=True)
+    best = np.zeros(len(xy))
+    np.maximum.at(best, places.ravel(), found.reached / found.targets)
+    drawn = plot.scatter(xy[:, 0], xy[:, 1], c=100 * best, s=_size(len(xy)), marker="s", cmap="viridis", vmin=0, vmax=100)
+    figure.colorbar(drawn, label="targets reached without contact, %, in the best turn")
+    top = found.best(1)[0]
+    x, y = found.bases[top, :2]
+    yaw = 2 * np.arctan2(*found.bases[top, 5:7])
+    span = max(np.ptp(xy[:, 0]), np.ptp(xy[:, 1]), 1e-3)
+    plot.plot(x, y, "*", color="red", markersize=14)
+    plot.arrow(x, y, 0.08 * span * np.cos(yaw), 0.08 * span * np.sin(yaw), color="red", width=0.006 * span)
+    plot.set(xlabel="x of the base, m", ylabel="y of the base, m", aspect="equal")
+    plot.set_title(f"best: {found.reached[top]:,} of {found.targets:,} targets from ({x:.2f}, {y:.2f}) m")
+    return figure
+
+
+def _size(count: int) -> float:
+    return max(4.0, 60_000.0 / max(count, 1))
+
+
+def _states(result: Result, about: dict[str, Any], axes: tuple[str, str] | None) -> Figure:
+    """Draw the least distance, or the share of colliding states, over two joints and all values of the others."""
+    joints, limits = about["joints"], ranges(np.array(about["limits"]))
+    chosen = [_joint(joints, name) for name in axes or (joints[min(1, len(joints) - 1)], joints[min(2, len(joints) - 1)])]
+    states = _read(result.manifest()["task"]["states"])
+    shape = [states.steps[k] if isinstance(states, Grid) else _BINS for k in chosen]
+    low, high = limits[chosen].T
+    column, is_distance = _column(result)
+    least, sums, counts = np.full(shape, np.inf), np.zeros(shape), np.zeros(shape)
+    for batch in result.batches():
+        q = states.rows(int(batch["index"][0]), len(batch["index"]), np.array(about["limits"]))[:, chosen]
+        steps = np.array(shape) - isinstance(states, Grid)
+        at = np.clip(((q - low) / (high - low) * steps + 0.5 * isinstance(states, Grid)).astype(int), 0, np.array(shape) - 1)
+        place = (at[:, 0], at[:, 1])
+        values = batch[column].astype(float)
+        np.minimum.at(least, place, values)
+        np.add.at(sums, place, values)
+        np.add.at(counts, place, 1.0)
+    figure, plot = _figure()
+    values = 1e3 * least if is_distance else 100 * sums / np.maximum(counts, 1)
+    values = np.where((counts > 0) & np.isfinite(values), values, np.nan)
+    drawn = plot.imshow(
+        values.T, origin="lower", aspect="auto", extent=(low[0], high[0], low[1], high[1]), cmap="viridis" if is_distance else "magma"
+    )
+    figure.colorbar(drawn, label="least distance, mm" if is_distance else f"states with `{column}`, %")
+    plot.set(xlabel=f"{joints[chosen[0]]}, rad or m", ylabel=f"{joints[chosen[1]]}, rad or m")
+    plot.set_title(f"{result.rows:,} states; the other joints anywhere")
+    return figure
+
+
+def _column(result: Result) -> tuple[str, bool]:
+    """Return the column to draw, and whether it is a distance."""
+    if "distance_m" in result.least:
+        return "distance_m", True
+    if result.counts:
+        return next(iter(result.counts)), False
+    raise ArgumentError("no column is a distance or a number\n  write: a sweep with a column of numbers")
+
+
+def _joint(joints: list[str], name: str) -> int:
+    if name not in joints:
+        raise ArgumentError(f"there is no joint {name!r}\n  write: one of {', '.join(joints)}")
+    return joints.index(name)
+
+
+def _read(states: dict[str, Any]) -> States:
+    """Return the states that a manifest names."""
+    kind = states["kind"]
+    if kind == "grid":
+        return Grid(tuple(states["steps"]))
+    if kind == "table":
+        return Table(Path(states["file"]))
+    return (Random if kind == "random" else Sobol)(states["number"], states["seed"])
