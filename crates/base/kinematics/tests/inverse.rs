@@ -383,3 +383,61 @@ fn the_same_input_gets_the_same_solution() {
         assert!(m < 1e-9 && rad < 1e-9);
     }
 }
+
+/// The arm with joints up to 0.4 mrad and 0.4 mm off, and limits of which some end at `q`.
+fn inexact(chain: &Chain, q: &[f64], random: &mut SplitMix) -> Chain {
+    let mut joints = chain.joints().to_vec();
+    for (joint, q) in joints.iter_mut().zip(q) {
+        let direction = |random: &mut SplitMix| random.pose().rotation * Vec3::X;
+        let axis = direction(random);
+        let off = Pose::new(Rotation::from_axis_angle(axis, random.between(-4e-4, 4e-4)), direction(random) * 4e-4);
+        joint.origin = joint.origin * off;
+        let beyond = |random: &mut SplitMix| if random.unit() < 0.3 { 0.0 } else { random.between(1e-4, 0.8) };
+        joint.limits = Limits { lower: q - beyond(random), upper: q + beyond(random), ..joint.limits };
+    }
+    Chain::new(chain.name(), chain.links().to_vec(), joints).unwrap()
+}
+
+/// The value of a joint for which a quantity of the form `a + b·cos(value − s)` is extreme: `s` or half a turn from it.
+fn extreme(chain: &Chain, q: &[f64], joint: usize, quantity: impl Fn(&ChainState) -> f64) -> f64 {
+    let at = |value: f64| {
+        let mut state = ChainState::new(chain);
+        state.q.copy_from_slice(q);
+        state.q[joint] = value;
+        chain.forward(&mut state);
+        quantity(&state)
+    };
+    let (front, side, back) = (at(0.0), at(FRAC_PI_2), at(PI));
+    (side - 0.5 * (front + back)).atan2(0.5 * (front - back))
+}
+
+#[test]
+fn the_closed_form_never_proves_that_a_pose_is_out_of_reach_which_is_not() {
+    let mut random = SplitMix(31);
+    let (mut closed, mut single) = (0, 0);
+    for round in 0..6000 {
+        let ideal = disguised_wrist_arm(&mut random, PI);
+        let mut q = vec![0.0; 6];
+        random.state(&ideal, &mut q);
+        let near = |random: &mut SplitMix| [0.0, 1e-3, 0.02, 0.1][random.below(4)] * random.between(-1.0, 1.0);
+        if round % 3 > 0 {
+            let axis = |state: &ChainState, joint: usize| {
+                state.link_in_root(LinkId(joint + 1)).rotation * ideal.joints()[joint].axis
+            };
+            q[4] = extreme(&ideal, &q, 4, |state| axis(state, 3).dot(axis(state, 5))) + near(&mut random);
+        }
+        if round % 3 > 1 {
+            let center = |state: &ChainState, link: usize| state.link_in_root(LinkId(link)).translation;
+            let squared = |state: &ChainState| center(state, 5).distance(center(state, 2)).powi(2);
+            q[2] = extreme(&ideal, &q, 2, squared) + PI * random.below(2) as f64 + near(&mut random);
+        }
+        let chain = inexact(&ideal, &q, &mut random);
+        let mut solver = solver(&chain);
+        // The search begins at a solution: none is found only if none is searched.
+        let all = solver.solve_all(&tip_at(&chain, &q), &q);
+        assert!(!all.is_empty(), "round {round}: {q:?}");
+        closed += usize::from(solver.method() == IkMethod::SphericalWrist);
+        single += usize::from(all.len() == 1);
+    }
+    assert!(closed > 3000 && single > 1000, "{closed} {single}");
+}

@@ -38,7 +38,9 @@ impl ReachTarget {
     fn frames(self, turns: usize) -> impl Iterator<Item = Pose> {
         let (first, count) = match self {
             Self::Frame(pose) => (pose, 1),
-            Self::Axis { point, direction } => (Pose::new(Rotation::from_z(direction), point), turns),
+            Self::Axis { point, direction } => {
+                (Pose::new(Rotation::from_z(direction.try_normalize().unwrap_or(Vec3::Z)), point), turns)
+            }
         };
         let turn = move |k: usize| Rotation::from_axis_angle(Vec3::Z, std::f64::consts::TAU * k as f64 / count as f64);
         (0..count).map(move |k| Pose::new(first.rotation * turn(k), first.translation))

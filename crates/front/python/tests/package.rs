@@ -77,7 +77,8 @@ fn the_examples_of_the_documentation_print_what_they_say() {
         "import doctest, elbowroom\n\
          from elbowroom import poses\n\
          parse, runner = doctest.DocTestParser().get_doctest, doctest.DocTestRunner()\n\
-         for shown in (elbowroom, elbowroom.Robot, elbowroom.Cell, elbowroom.Checker, elbowroom.plan, poses.matrix):\n    \
+         classes = (elbowroom.Robot, elbowroom.Cell, elbowroom.Checker, elbowroom.ReachQuery)\n\
+         for shown in (elbowroom, *classes, elbowroom.plan, poses.matrix):\n    \
              runner.run(parse(shown.__doc__, {'elbowroom': elbowroom, 'matrix': poses.matrix}, shown.__name__, None, 0))\n\
          assert runner.tries > 12 and runner.failures == 0, (runner.tries, runner.failures)\n",
     )

@@ -12,7 +12,7 @@ use super::options::{IkMethod, IkOptions, IkTask};
 use super::pose_goal::{PoseError, PoseGoal};
 use super::sequence::{quasirandom, window};
 use super::solution::IkSolution;
-use super::spherical_wrist::SphericalWrist;
+use super::spherical_wrist::{LARGEST_DIFFERENCE, SphericalWrist};
 use crate::{Chain, LinkId};
 
 /// Largest number of steps of [`IkSolver::refine`].
@@ -126,11 +126,11 @@ impl IkSolver {
             return Vec::new();
         }
         let start = self.start(seed);
-        let mut all = Vec::new();
+        let (mut all, mut outside) = (Vec::new(), None);
         if self.wrist.is_some() {
-            all = self.closed_form(target_in_root, &start, usize::MAX, &mut None);
+            all = self.closed_form(target_in_root, &start, usize::MAX, &mut outside);
         }
-        if all.is_empty() {
+        if all.is_empty() && !self.closed_form_is_complete(target_in_root, &start, outside.as_ref()) {
             for index in 0..self.starts() {
                 if let Some(found) = self.minimize_from(target_in_root, &start, index, true).0
                     && all.iter().all(|known| self.differ(&known.x, &found.x))
@@ -251,6 +251,14 @@ impl IkSolver {
             }
         }
         found
+    }
+
+    /// Whether the closed form, which has found no solution, proves that there is none. `outside` is its least violation of a limit.
+    fn closed_form_is_complete(&self, target: &Pose, start: &[f64], outside: Option<&LimitViolation>) -> bool {
+        let Some(wrist) = &self.wrist else { return false };
+        let seed: [f64; 6] = std::array::from_fn(|i| start[i] % TAU);
+        outside.is_none_or(|violation| violation.by > LARGEST_DIFFERENCE)
+            && wrist.has_all_solutions(target, &wrist.candidates(target, &seed))
     }
 
     /// Adds and subtracts full turns until every joint is as near to `start` as its limits allow. Returns the worst

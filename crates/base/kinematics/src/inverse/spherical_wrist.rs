@@ -20,6 +20,12 @@ use super::sequence::quasirandom;
 /// intersecting: files round π/2. The solutions are refined on the chain as written.
 const SLACK: f64 = 1e-3;
 
+/// Largest difference (rad) between a solution of the arm and the one of the model, if the position is [regular](REGULAR).
+pub(super) const LARGEST_DIFFERENCE: f64 = 50.0 * SLACK;
+/// Distance from singular positions at which deviations of [`SLACK`] cannot become [`LARGEST_DIFFERENCE`]: sine of joint 5, and
+/// the centre of the wrist beside axis 1 in half lengths of the arm.
+const REGULAR: f64 = 0.2;
+
 /// The closed-form model of an arm.
 #[derive(Clone)]
 pub struct SphericalWrist {
@@ -27,6 +33,19 @@ pub struct SphericalWrist {
     base_in_root: Pose,
     tool_in_flange: Pose,
     branches: Branches,
+    lengths: Lengths,
+}
+
+/// Lengths of the model, m.
+#[derive(Debug, Clone, Copy)]
+struct Lengths {
+    /// From axis 1 to axis 2, ahead.
+    shoulder: f64,
+    /// From the plane of the arm to axis 1.
+    aside: f64,
+    upper_arm: f64,
+    /// From axis 3 to the centre of the wrist.
+    forearm: f64,
 }
 
 /// Parameters that distinguish the branches.
@@ -116,7 +135,14 @@ impl SphericalWrist {
             up: away_from_base(z, &base_in_root, arm),
             straight: straight(-theta5, arm),
         };
+        let lengths = Lengths {
+            shoulder: parameters.a1,
+            aside: parameters.b.abs(),
+            upper_arm: parameters.c2,
+            forearm: parameters.a2.hypot(parameters.c3),
+        };
         sound.then(|| Self {
+            lengths,
             model: OPWKinematics::new(parameters),
             base_in_root,
             tool_in_flange: Pose::IDENTITY,
@@ -167,13 +193,37 @@ impl SphericalWrist {
     /// Up to eight solutions of the model, with angles near the seed and without regard to limits. If two axes of the
     /// wrist are aligned, axis 4 stays as near to the seed as possible.
     pub fn candidates(&self, target_in_root: &Pose, seed: &[f64; 6]) -> Vec<[f64; 6]> {
-        let flange = self.base_in_root.inverse() * *target_in_root * self.tool_in_flange.inverse();
+        let flange = self.flange_at(target_in_root);
         let rotation = OpwRotation::from_array(flange.rotation.to_quaternion_xyzw());
         let translation = flange.translation.to_array().into();
         match OpwPose::try_from_parts(translation, rotation) {
             Ok(pose) => self.model.inverse_continuing(&pose, seed),
             Err(_) => Vec::new(),
         }
+    }
+}
+
+impl SphericalWrist {
+    fn flange_at(&self, target_in_root: &Pose) -> Pose {
+        self.base_in_root.inverse() * *target_in_root * self.tool_in_flange.inverse()
+    }
+
+    /// Whether every solution of the arm, whose axes may deviate from those of the model by [`SLACK`], is near one of these
+    /// candidates for the target: the wrist is neither above the base, nor at the end of what the arm reaches, nor aligned.
+    pub fn has_all_solutions(&self, target_in_root: &Pose, candidates: &[[f64; 6]]) -> bool {
+        let Lengths { shoulder, aside, upper_arm, forearm } = self.lengths;
+        let center = self.flange_at(target_in_root).translation;
+        let length = shoulder + aside + upper_arm + forearm;
+        let beside_axis_1 = center.x.hypot(center.y);
+        let ahead = (beside_axis_1 * beside_axis_1 - aside * aside).max(0.0).sqrt();
+        // From the shoulder in front of axis 1, and from the one behind it.
+        let is_at_no_end = [ahead - shoulder, ahead + shoulder].iter().all(|ahead| {
+            let away = ahead.hypot(center.z);
+            let ends = [upper_arm + forearm, (upper_arm - forearm).abs()];
+            ends.iter().all(|end| (away - end).abs() > 0.25 * REGULAR * length)
+        });
+        let is_turned = |q: &[f64; 6]| (q[4] - self.branches.straight).sin().abs() > REGULAR;
+        beside_axis_1 - aside > 0.5 * REGULAR * length && is_at_no_end && candidates.iter().all(is_turned)
     }
 }
 
