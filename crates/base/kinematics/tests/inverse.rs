@@ -384,15 +384,17 @@ fn the_same_input_gets_the_same_solution() {
     }
 }
 
-/// The arm with joints up to 0.4 mrad and 0.4 mm off, and limits of which some end at `q`.
+/// The arm with joints up to 0.4 mrad and 0.4 mm off, or exact, and limits of which some end at `q`.
 fn inexact(chain: &Chain, q: &[f64], random: &mut SplitMix) -> Chain {
     let mut joints = chain.joints().to_vec();
+    let size = [0.0, 1e-6, 4e-4][random.below(3)];
     for (joint, q) in joints.iter_mut().zip(q) {
         let direction = |random: &mut SplitMix| random.pose().rotation * Vec3::X;
         let axis = direction(random);
-        let off = Pose::new(Rotation::from_axis_angle(axis, random.between(-4e-4, 4e-4)), direction(random) * 4e-4);
+        let off = Pose::new(Rotation::from_axis_angle(axis, random.between(-size, size)), direction(random) * size);
         joint.origin = joint.origin * off;
-        let beyond = |random: &mut SplitMix| if random.unit() < 0.3 { 0.0 } else { random.between(1e-4, 0.8) };
+        let beyond =
+            |random: &mut SplitMix| if random.unit() < 0.3 { 0.0 } else { 10f64.powf(random.between(-8.0, 0.0)) };
         joint.limits = Limits { lower: q - beyond(random), upper: q + beyond(random), ..joint.limits };
     }
     Chain::new(chain.name(), chain.links().to_vec(), joints).unwrap()
@@ -419,7 +421,8 @@ fn the_closed_form_never_proves_that_a_pose_is_out_of_reach_which_is_not() {
         let ideal = disguised_wrist_arm(&mut random, PI);
         let mut q = vec![0.0; 6];
         random.state(&ideal, &mut q);
-        let near = |random: &mut SplitMix| [0.0, 1e-3, 0.02, 0.1][random.below(4)] * random.between(-1.0, 1.0);
+        let near =
+            |random: &mut SplitMix| [0.0, 1e-7, 1e-5, 1e-3, 0.02, 0.1][random.below(6)] * random.between(-1.0, 1.0);
         if round % 3 > 0 {
             let axis = |state: &ChainState, joint: usize| {
                 state.link_in_root(LinkId(joint + 1)).rotation * ideal.joints()[joint].axis

@@ -12,7 +12,7 @@ use super::options::{IkMethod, IkOptions, IkTask};
 use super::pose_goal::{PoseError, PoseGoal};
 use super::sequence::{quasirandom, window};
 use super::solution::IkSolution;
-use super::spherical_wrist::{LARGEST_DIFFERENCE, SphericalWrist};
+use super::spherical_wrist::SphericalWrist;
 use crate::{Chain, LinkId};
 
 /// Largest number of steps of [`IkSolver::refine`].
@@ -126,11 +126,11 @@ impl IkSolver {
             return Vec::new();
         }
         let start = self.start(seed);
-        let (mut all, mut outside) = (Vec::new(), None);
+        let mut all = Vec::new();
         if self.wrist.is_some() {
-            all = self.closed_form(target_in_root, &start, usize::MAX, &mut outside);
+            all = self.closed_form(target_in_root, &start, usize::MAX, &mut None);
         }
-        if all.is_empty() && !self.closed_form_is_complete(target_in_root, &start, outside.as_ref()) {
+        if all.is_empty() && !self.is_proven_out_of_reach(target_in_root, &start) {
             for index in 0..self.starts() {
                 if let Some(found) = self.minimize_from(target_in_root, &start, index, true).0
                     && all.iter().all(|known| self.differ(&known.x, &found.x))
@@ -253,12 +253,20 @@ impl IkSolver {
         found
     }
 
-    /// Whether the closed form, which has found no solution, proves that there is none. `outside` is its least violation of a limit.
-    fn closed_form_is_complete(&self, target: &Pose, start: &[f64], outside: Option<&LimitViolation>) -> bool {
-        let Some(wrist) = &self.wrist else { return false };
+    /// Whether the closed form proves that there is no solution, although it is that of a model: every candidate is farther beyond a
+    /// limit than a solution can be away from it.
+    fn is_proven_out_of_reach(&self, target: &Pose, start: &[f64]) -> bool {
+        let Some(wrist) = self.wrist.as_ref().filter(|wrist| wrist.is_regular(target)) else { return false };
         let seed: [f64; 6] = std::array::from_fn(|i| start[i] % TAU);
-        outside.is_none_or(|violation| violation.by > LARGEST_DIFFERENCE)
-            && wrist.has_all_solutions(target, &wrist.candidates(target, &seed))
+        wrist.candidates(target, &seed).iter_mut().all(|x| {
+            self.unwind(x, start);
+            let beyond = |joints: std::ops::Range<usize>| {
+                joints.clone().zip(&self.arm.variables[joints]).any(|(i, variable)| {
+                    (variable.lower - x[i]).max(x[i] - variable.upper) > wrist.largest_difference()
+                })
+            };
+            beyond(0..3) || beyond(3..6) && wrist.is_turned(x)
+        })
     }
 
     /// Adds and subtracts full turns until every joint is as near to `start` as its limits allow. Returns the worst

@@ -20,11 +20,8 @@ use super::sequence::quasirandom;
 /// intersecting: files round π/2. The solutions are refined on the chain as written.
 const SLACK: f64 = 1e-3;
 
-/// Largest difference (rad) between a solution of the arm and the one of the model, if the position is [regular](REGULAR).
-pub(super) const LARGEST_DIFFERENCE: f64 = 50.0 * SLACK;
-/// Distance from singular positions at which deviations of [`SLACK`] cannot become [`LARGEST_DIFFERENCE`]: sine of joint 5, and
-/// the centre of the wrist beside axis 1 in half lengths of the arm.
-const REGULAR: f64 = 0.2;
+/// Deviation of the model that is assumed at least: rounding.
+const LEAST_DEVIATION: f64 = 1e-9;
 
 /// The closed-form model of an arm.
 #[derive(Clone)]
@@ -34,6 +31,8 @@ pub struct SphericalWrist {
     tool_in_flange: Pose,
     branches: Branches,
     lengths: Lengths,
+    /// Bound on the difference between the poses of arm and model at the same joint values: rad, and parts of the arm's length.
+    deviation: f64,
 }
 
 /// Lengths of the model, m.
@@ -84,7 +83,9 @@ impl SphericalWrist {
         let mut wrist = Self::from_axes(&axes, arm)?;
         let flange_in_root = wrist.base_in_root * wrist.flange_in_base(&[0.0; 6])?;
         wrist.tool_in_flange = flange_in_root.inverse() * tip_in_root;
-        wrist.reproduces(arm).then_some(wrist)
+        let deviation = wrist.deviation(arm)?;
+        wrist.deviation = 4.0 * deviation + LEAST_DEVIATION;
+        (deviation < 10.0 * SLACK).then_some(wrist)
     }
 
     fn from_axes(axes: &[AxisInRoot; 6], arm: &Arm) -> Option<Self> {
@@ -143,6 +144,7 @@ impl SphericalWrist {
         };
         sound.then(|| Self {
             lengths,
+            deviation: 0.0,
             model: OPWKinematics::new(parameters),
             base_in_root,
             tool_in_flange: Pose::IDENTITY,
@@ -176,18 +178,21 @@ impl SphericalWrist {
         Some(Pose::new(rotation, Vec3::from(pose.translation.to_array())))
     }
 
-    fn reproduces(&self, arm: &Arm) -> bool {
+    /// Largest difference between arm and model in sampled positions; `None` if the model has none.
+    fn deviation(&self, arm: &Arm) -> Option<f64> {
         let mut axes = [AxisInRoot { origin: Vec3::ZERO, axis: Vec3::ZERO }; 6];
-        (0..16).all(|k| {
+        let mut largest = 0.0_f64;
+        for k in 0..16 {
             let q: [f64; 6] = std::array::from_fn(|i| 6.0 * (quasirandom(k, i, 6) - 0.5));
             let exact = arm.tip_in_root(&q, &mut axes);
-            let Some(flange) = self.flange_in_base(&q) else {
-                return false;
-            };
-            let model = self.base_in_root * flange * self.tool_in_flange;
-            exact.translation.distance(model.translation) < 10.0 * SLACK * arm.scale().max(1.0)
-                && rotation_error(exact.rotation, model.rotation).length() < 10.0 * SLACK
-        })
+            let model = self.base_in_root * self.flange_in_base(&q)? * self.tool_in_flange;
+            let away = exact.translation.distance(model.translation) / arm.scale().max(1.0);
+            // Written so that NaN is too large.
+            largest = [away, rotation_error(exact.rotation, model.rotation).length()]
+                .iter()
+                .fold(largest, |largest, &found| if found <= largest { largest } else { found });
+        }
+        Some(largest)
     }
 
     /// Up to eight solutions of the model, with angles near the seed and without regard to limits. If two axes of the
@@ -208,22 +213,40 @@ impl SphericalWrist {
         self.base_in_root.inverse() * *target_in_root * self.tool_in_flange.inverse()
     }
 
-    /// Whether every solution of the arm, whose axes may deviate from those of the model by [`SLACK`], is near one of these
-    /// candidates for the target: the wrist is neither above the base, nor at the end of what the arm reaches, nor aligned.
-    pub fn has_all_solutions(&self, target_in_root: &Pose, candidates: &[[f64; 6]]) -> bool {
+    /// Largest difference (rad) between a solution of the arm and that of the model, away from singular positions.
+    ///
+    /// The deviation is enlarged by joint 3 or 1, and the result again by joint 5: each time at most by the inverse of
+    /// [`least_sine`](Self::least_sine). So the cube root leaves a reserve of four.
+    pub fn largest_difference(&self) -> f64 {
+        self.deviation.cbrt()
+    }
+
+    /// Sine of an angle, or part of the arm's length, below which a position counts as singular.
+    fn least_sine(&self) -> f64 {
+        2.0 * self.deviation.cbrt()
+    }
+
+    /// Whether joints 1 to 3 of every solution of the arm are near those of a candidate: the wrist is neither above the base nor at
+    /// an end of what the arm reaches.
+    pub fn is_regular(&self, target_in_root: &Pose) -> bool {
         let Lengths { shoulder, aside, upper_arm, forearm } = self.lengths;
         let center = self.flange_at(target_in_root).translation;
         let length = shoulder + aside + upper_arm + forearm;
         let beside_axis_1 = center.x.hypot(center.y);
         let ahead = (beside_axis_1 * beside_axis_1 - aside * aside).max(0.0).sqrt();
-        // From the shoulder in front of axis 1, and from the one behind it.
+        // From the shoulder in front of axis 1, and from the one behind it. The sine of joint 3 grows like the root of the distance
+        // from the end.
         let is_at_no_end = [ahead - shoulder, ahead + shoulder].iter().all(|ahead| {
             let away = ahead.hypot(center.z);
             let ends = [upper_arm + forearm, (upper_arm - forearm).abs()];
-            ends.iter().all(|end| (away - end).abs() > 0.25 * REGULAR * length)
+            ends.iter().all(|end| (away - end).abs() > 0.25 * self.least_sine().powi(2) * length)
         });
-        let is_turned = |q: &[f64; 6]| (q[4] - self.branches.straight).sin().abs() > REGULAR;
-        beside_axis_1 - aside > 0.5 * REGULAR * length && is_at_no_end && candidates.iter().all(is_turned)
+        beside_axis_1 - aside > self.least_sine() * length && is_at_no_end
+    }
+
+    /// Whether joints 4 to 6 of a candidate are near those of a solution: the axes of the wrist are not aligned.
+    pub fn is_turned(&self, candidate: &[f64; 6]) -> bool {
+        (candidate[4] - self.branches.straight).sin().abs() > self.least_sine()
     }
 }
 
