@@ -27,7 +27,8 @@ pub fn run(root: &Path) -> Result<(), String> {
         return Err(format!("the wheel has {bytes} bytes, more than {LARGEST}"));
     }
     let file = wheel.to_string_lossy().into_owned();
-    let packages = [&file, python::PYTEST, python::HYPOTHESIS, python::PYARROW, python::RAY, python::SCIPY, python::MATPLOTLIB];
+    let packages =
+        [&file, python::PYTEST, python::HYPOTHESIS, python::PYARROW, python::RAY, python::SCIPY, python::MATPLOTLIB];
     let python = python::environment(root, &target.join("wheel/test"), &packages, &[])?;
     let python = python.to_string_lossy().into_owned();
     let tests = root.join("python/tests").to_string_lossy().into_owned();

@@ -47,6 +47,17 @@ struct Lengths {
     forearm: f64,
 }
 
+impl Lengths {
+    fn of(parameters: &Parameters) -> Self {
+        Self {
+            shoulder: parameters.a1,
+            aside: parameters.b.abs(),
+            upper_arm: parameters.c2,
+            forearm: parameters.a2.hypot(parameters.c3),
+        }
+    }
+}
+
 /// Parameters that distinguish the branches.
 #[derive(Debug, Clone, Copy)]
 struct Branches {
@@ -136,14 +147,8 @@ impl SphericalWrist {
             up: away_from_base(z, &base_in_root, arm),
             straight: straight(-theta5, arm),
         };
-        let lengths = Lengths {
-            shoulder: parameters.a1,
-            aside: parameters.b.abs(),
-            upper_arm: parameters.c2,
-            forearm: parameters.a2.hypot(parameters.c3),
-        };
         sound.then(|| Self {
-            lengths,
+            lengths: Lengths::of(&parameters),
             deviation: 0.0,
             model: OPWKinematics::new(parameters),
             base_in_root,
