@@ -10,13 +10,14 @@ state. Lengths are metres, times seconds. For a cell the robots stand side by si
 
 from elbowroom._elbowroom import Cell, Checker, ReachQuery, Robot, __version__, plan
 from elbowroom.errors import ArgumentError, ArrayError, Error, FileError
-from elbowroom.results import JointMap, Path, Reach, Run, Trace, Witness
+from elbowroom.results import Edges, JointMap, Path, Reach, Run, Trace, Witness
 
 __all__ = [
     "ArgumentError",
     "ArrayError",
     "Cell",
     "Checker",
+    "Edges",
     "Error",
     "FileError",
     "JointMap",

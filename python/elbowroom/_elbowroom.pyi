@@ -5,7 +5,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elbowroom.poses import PoseLike
-from elbowroom.results import JointMap, Path, Reach, Run, Trace, Witness
+from elbowroom.results import Edges, JointMap, Path, Reach, Run, Trace, Witness
 
 __all__ = ["Cell", "Checker", "ReachQuery", "Robot", "RunRecord", "__version__", "plan"]
 
@@ -75,6 +75,7 @@ class Checker:
     def distance(self, q: _States) -> npt.NDArray[np.float64]: ...
     def within(self, q: _States, tolerance_m: float) -> npt.NDArray[np.bool_]: ...
     def witness(self, q: _States) -> Witness: ...
+    def edges(self, q0: _States, q1: _States) -> Edges: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final

@@ -15,7 +15,7 @@ from elbowroom.errors import ArgumentError
 if TYPE_CHECKING:
     from elbowroom._elbowroom import RunRecord
 
-__all__ = ["JointMap", "Path", "Reach", "Run", "Trace", "Witness"]
+__all__ = ["Edges", "JointMap", "Path", "Reach", "Run", "Trace", "Witness"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +37,29 @@ class Witness:
     b: list[str | None]
     point_a_m: npt.NDArray[np.float64]
     point_b_m: npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """How far straight motions are free.
+
+    Attributes
+    ----------
+    free
+        `(N,)` bool: proven free from end to end.
+    free_share
+        `(N,)`: the part of the motion that is free, 0 to 1.
+    certain
+        `(N,)` bool: false where the proof ended without a contact; what follows `free_share` is unknown.
+    a, b
+        The names of the pair that meets, `robot/link` or an object; `None` for free motions.
+    """
+
+    free: npt.NDArray[np.bool_]
+    free_share: npt.NDArray[np.float64]
+    certain: npt.NDArray[np.bool_]
+    a: list[str | None]
+    b: list[str | None]
 
 
 @dataclass(frozen=True, eq=False)

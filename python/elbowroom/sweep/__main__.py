@@ -33,7 +33,7 @@ def main() -> int:
 def _tell(result: Result) -> None:
     """Print the result, and draw it where matplotlib is installed."""
     print(result)
-    if "bases" in result.manifest()["about"]:
+    if "base" in result.manifest()["about"]:
         print(result.placement())
     if importlib.util.find_spec("matplotlib"):
         picture = result.folder / "summary.png"

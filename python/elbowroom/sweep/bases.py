@@ -6,6 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -103,6 +104,12 @@ class BaseTable(Bases):
     def files(self) -> list[Path]:
         """Return the file."""
         return [self.file]
+
+
+def of_manifest(bases: dict[str, Any]) -> Bases:
+    """Return the places that the manifest of a sweep names."""
+    fields = {key: tuple(value) if isinstance(value, list) else value for key, value in bases.items() if key != "kind"}
+    return BaseTable(Path(bases["file"])) if bases["kind"] == "basetable" else BaseGrid(**fields)
 
 
 def _value(axis: Axis, place: int) -> float:

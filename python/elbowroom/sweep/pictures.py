@@ -25,7 +25,7 @@ _BINS = 48
 def draw(result: Result, axes: tuple[str, str] | None) -> Figure:
     """Draw a map over two joints, or over the places of the base."""
     about = result.manifest()["about"]
-    return _placement(result.placement()) if "bases" in about else _states(result, about, axes)
+    return _placement(result.placement()) if "base" in about else _states(result, about, axes)
 
 
 def _figure() -> tuple[Figure, Any]:
@@ -58,30 +58,29 @@ def _size(count: int) -> float:
 
 
 def _states(result: Result, about: dict[str, Any], axes: tuple[str, str] | None) -> Figure:
-    """Draw the least distance, or the share of colliding states, over two joints and all values of the others."""
+    """Draw the mean distance, or the share of states, over two joints and all values of the others."""
     joints, limits = about["joints"], ranges(np.array(about["limits"]))
     chosen = [_joint(joints, name) for name in axes or (joints[min(1, len(joints) - 1)], joints[min(2, len(joints) - 1)])]
     states = _read(result.manifest()["task"]["states"])
     shape = [states.steps[k] if isinstance(states, Grid) else _BINS for k in chosen]
     low, high = limits[chosen].T
     column, is_distance = _column(result)
-    least, sums, counts = np.full(shape, np.inf), np.zeros(shape), np.zeros(shape)
+    sums, counts = np.zeros(shape), np.zeros(shape)
     for batch in result.batches():
         q = states.rows(int(batch["index"][0]), len(batch["index"]), np.array(about["limits"]))[:, chosen]
         steps = np.array(shape) - isinstance(states, Grid)
         at = np.clip(((q - low) / (high - low) * steps + 0.5 * isinstance(states, Grid)).astype(int), 0, np.array(shape) - 1)
-        place = (at[:, 0], at[:, 1])
-        values = batch[column].astype(float)
-        np.minimum.at(least, place, values)
-        np.add.at(sums, place, values)
+        values = batch[column].astype(float) if is_distance else (batch[column] != 0).astype(float)
+        known = np.isfinite(values)
+        place = (at[known, 0], at[known, 1])
+        np.add.at(sums, place, values[known])
         np.add.at(counts, place, 1.0)
     figure, plot = _figure()
-    values = 1e3 * least if is_distance else 100 * sums / np.maximum(counts, 1)
-    values = np.where((counts > 0) & np.isfinite(values), values, np.nan)
+    values = np.where(counts > 0, (1e3 if is_distance else 100.0) * sums / np.maximum(counts, 1.0), np.nan)
     drawn = plot.imshow(
         values.T, origin="lower", aspect="auto", extent=(low[0], high[0], low[1], high[1]), cmap="viridis" if is_distance else "magma"
     )
-    figure.colorbar(drawn, label="least distance, mm" if is_distance else f"states with `{column}`, %")
+    figure.colorbar(drawn, label="mean distance, mm; contact is 0" if is_distance else f"states with `{column}`, %")
     plot.set(xlabel=f"{joints[chosen[0]]}, rad or m", ylabel=f"{joints[chosen[1]]}, rad or m")
     plot.set_title(f"{result.rows:,} states; the other joints anywhere")
     return figure

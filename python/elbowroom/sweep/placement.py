@@ -55,7 +55,7 @@ class Placement:
         for i in self.best(5):
             x, y, z = self.bases[i, :3]
             qz, qw = self.bases[i, 5:]
-            turn = np.degrees(2 * np.arctan2(qz, qw))
+            turn = round(float(np.degrees(2 * np.arctan2(qz, qw)))) % 360
             share = 100 * self.reached[i] / self.targets
-            lines.append(f"{i:>6}: x {x:.3f}, y {y:.3f}, z {z:.3f} m, turned {turn:.0f}°: {self.reached[i]:,} reached ({share:.1f} %)")
+            lines.append(f"{i:>6}: x {x:.3f}, y {y:.3f}, z {z:.3f} m, turned {turn}°: {self.reached[i]:,} reached ({share:.1f} %)")
         return "\n  ".join(lines)

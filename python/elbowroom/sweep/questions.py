@@ -134,8 +134,8 @@ class ReachQuestion(Question):
         return _hash([self._query.joints], (self._query.base, self._targets, *values))
 
     def about(self) -> dict[str, Any]:
-        """Return the places and the number of targets."""
-        return {"targets": len(self._targets), "bases": self._bases.table(self._query.base).tolist()}
+        """Return the number of targets, and the place of the base in the file."""
+        return {"targets": len(self._targets), "base": self._query.base.tolist()}
 
 
 def name_of(ask: str | Function) -> str:

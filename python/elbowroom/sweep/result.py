@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elbowroom.errors import ArgumentError, FileError
-from elbowroom.sweep import parts
+from elbowroom.sweep import bases, parts
 from elbowroom.sweep.extras import imported
 from elbowroom.sweep.parts import Part
 from elbowroom.sweep.placement import Placement
@@ -80,10 +80,12 @@ class Result:
         ArgumentError
             If the sweep asked something else.
         """
-        about = self.manifest()["about"]
-        if "bases" not in about:
+        manifest = self.manifest()
+        about = manifest["about"]
+        if "base" not in about:
             raise ArgumentError("the sweep has no places of a base\n  write: a task with [reach] and [bases]")
-        return Placement.of(np.array(about["bases"]).reshape(-1, 7), about["targets"], self.batches())
+        places = bases.of_manifest(manifest["task"]["states"]["bases"])
+        return Placement.of(places.table(np.array(about["base"])), about["targets"], self.batches())
 
     def picture(self, file: str | Path | None = None, axes: tuple[str, str] | None = None) -> Figure:
         """Draw a map of the answers: over two joints, or over the places of the base.

@@ -50,5 +50,5 @@ pub use reach::{Reach, ReachQuery, ReachTarget};
 pub use rows::{
     BLOCK, ContactRecord, ContactRow, JointOvershoot, LimitRecord, LimitRow, MotionRecord, MotionRow, PairColumns,
     Query, QueryChecker, QueryEffort, QueryKind, QueryPairs, QueryPairsError, QueryRecord, QueryRow, QueryStates,
-    UnknownQueryKind, evaluate, evaluate_contacts, evaluate_limits, evaluate_motions, evaluate_query,
+    UnknownQueryKind, evaluate, evaluate_contacts, evaluate_edges, evaluate_limits, evaluate_motions, evaluate_query,
 };

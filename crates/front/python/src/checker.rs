@@ -4,7 +4,9 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use elbowroom::cell::{OutOfReachProofs, QueryModel};
-use elbowroom::query::{self, Level, Query, QueryKind, QueryPairs, QueryRow, QueryStates};
+use elbowroom::Diagnostic;
+use elbowroom::query::{self, Level, MotionRow, Query, QueryKind, QueryPairs, QueryRow, QueryStates};
+use elbowroom::robot::GeometryId;
 use elbowroom::scene::{CheckerOptions, Scene, SceneState};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -85,6 +87,18 @@ impl Model {
 }
 
 impl Checker {
+    fn query(&self, kind: QueryKind) -> Query<'_> {
+        Query {
+            kind,
+            options: self.options,
+            is_timed: false,
+            pairs: &self.pairs,
+            all_pairs_m: None,
+            start: &self.model.start,
+            threads: self.threads,
+        }
+    }
+
     /// Answers a query about every row, block by block.
     fn answer(
         &self,
@@ -92,39 +106,66 @@ impl Checker {
         kind: QueryKind,
         mut take: impl FnMut(&QueryRow) + Send,
     ) -> Result<usize, Fault> {
-        let (py, model) = (q.py(), &*self.model);
+        let (py, model, query) = (q.py(), &*self.model, self.query(kind));
         let rows = Rows::of(q, "q", &model.columns)?;
-        let query = Query {
-            kind,
-            options: self.options,
-            is_timed: false,
-            pairs: &self.pairs,
-            all_pairs_m: None,
-            start: &model.start,
-            threads: self.threads,
-        };
         for begin in (0..rows.len()).step_by(CHUNK) {
             let states = QueryStates::of_rows(&model.query, rows.chunk(begin)?);
-            let mut interrupted = None;
-            py.detach(|| {
+            interruptible(py, |go_on| {
                 query::evaluate_query(&model.scene, &states, &query, &mut |rows| {
                     rows.iter().for_each(&mut take);
-                    // The signals of a process arrive at its main thread, which may be this one.
-                    interrupted = Python::attach(signals).err();
-                    interrupted.is_none()
+                    go_on()
                 })
+                .map(drop)
             })?;
-            if let Some(error) = interrupted {
-                return Err(error.into());
-            }
         }
         Ok(rows.len())
     }
 
-    fn name(&self, row: &QueryRow, side: usize) -> Option<String> {
-        let pair = row.pair.map(|(a, b)| [a, b]);
-        pair.map(|pair| self.model.query.geometry_name(pair[side]))
+    /// Sweeps the motion from each row to the one in the same row of the other array.
+    fn sweep(
+        &self,
+        (q0, q1): (&Bound<'_, PyAny>, &Bound<'_, PyAny>),
+        mut take: impl FnMut(&MotionRow) + Send,
+    ) -> Result<(), Fault> {
+        let (py, model, query) = (q0.py(), &*self.model, self.query(QueryKind::Time));
+        let (from, to) = (Rows::of(q0, "q0", &model.columns)?, Rows::of(q1, "q1", &model.columns)?);
+        if from.len() != to.len() {
+            let text = format!("`q0` has {} rows, `q1` {}\n  write: as many ends as beginnings", from.len(), to.len());
+            return Err(Fault::Array(text));
+        }
+        for begin in (0..from.len()).step_by(CHUNK) {
+            let states = |rows: &Rows| Ok::<_, Fault>(QueryStates::of_rows(&model.query, rows.chunk(begin)?));
+            let (from, to) = (states(&from)?, states(&to)?);
+            interruptible(py, |go_on| {
+                query::evaluate_edges(&model.scene, &from, &to, &query, &mut |rows| {
+                    rows.iter().for_each(&mut take);
+                    go_on()
+                })
+                .map(drop)
+            })?;
+        }
+        Ok(())
     }
+
+    fn name(&self, pair: Option<(GeometryId, GeometryId)>, side: usize) -> Option<String> {
+        pair.map(|(a, b)| self.model.query.geometry_name([a, b][side]))
+    }
+}
+
+/// Runs work while other threads of Python run; its argument says whether to go on, and no signal has arrived.
+fn interruptible(
+    py: Python<'_>,
+    work: impl FnOnce(&mut (dyn FnMut() -> bool + Send)) -> Result<(), Diagnostic> + Send,
+) -> Result<(), Fault> {
+    let mut interrupted = None;
+    py.detach(|| {
+        work(&mut || {
+            // The signals of a process arrive at its main thread, which may be this one.
+            interrupted = Python::attach(signals).err();
+            interrupted.is_none()
+        })
+    })?;
+    interrupted.map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// Whether a signal, such as that of Ctrl-C, has become an exception.
@@ -271,7 +312,7 @@ impl Checker {
             distances.push(metres(row));
             let witness = row.witness.map(|(a, b)| [a.to_array(), b.to_array()]);
             for side in 0..2 {
-                names[side].push(self.name(row, side));
+                names[side].push(self.name(row.pair, side));
                 points[side].extend(witness.map_or([f64::NAN; 3], |witness| witness[side]));
             }
         })?;
@@ -279,6 +320,35 @@ impl Checker {
         let [on_a, on_b] = points.map(|points| shaped(&PyArray1::from_vec(py, points), [count, 3]));
         let distances = PyArray1::from_vec(py, distances);
         py.import("elbowroom.results")?.getattr("Witness")?.call1((distances, a, b, on_a?, on_b?))
+    }
+
+    /// Find out how far straight motions in joint space are free, proven between the states too.
+    ///
+    /// All joints of a row move at constant rates, all together.
+    ///
+    /// Parameters
+    /// ----------
+    /// q0, q1
+    ///     `(N, dof)` joint values at the beginnings and at the ends, in the order of `joints`.
+    ///
+    /// Returns
+    /// -------
+    /// Edges
+    fn edges<'py>(&self, q0: &Bound<'py, PyAny>, q1: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let py = q0.py();
+        let (mut shares, mut certain, mut names) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
+        self.sweep((q0, q1), |row| {
+            shares.push(row.hit.map_or(1.0, |hit| hit.time));
+            certain.push(row.hit.is_none_or(|hit| hit.certain));
+            for (side, names) in names.iter_mut().enumerate() {
+                names.push(self.name(row.hit.map(|hit| (hit.a, hit.b)), side));
+            }
+        })?;
+        let free: Vec<bool> = names[0].iter().map(Option::is_none).collect();
+        let [a, b] = names;
+        let (free, certain) = (PyArray1::from_vec(py, free), PyArray1::from_vec(py, certain));
+        let shares = PyArray1::from_vec(py, shares);
+        py.import("elbowroom.results")?.getattr("Edges")?.call1((free, shares, certain, a, b))
     }
 
     fn __repr__(&self) -> String {

@@ -16,7 +16,7 @@ mod states;
 pub use evaluate::{BLOCK, Query, QueryEffort, evaluate, evaluate_contacts, evaluate_query};
 pub use kind::{QueryKind, UnknownQueryKind};
 pub use limits::{JointOvershoot, LimitRecord, LimitRow, evaluate_limits};
-pub use motion::{MotionRecord, MotionRow, evaluate_motions};
+pub use motion::{MotionRecord, MotionRow, evaluate_edges, evaluate_motions};
 pub use pairs::{QueryPairs, QueryPairsError};
 pub use query_checker::QueryChecker;
 pub use row::{ContactRecord, ContactRow, PairColumns, QueryRecord, QueryRow};

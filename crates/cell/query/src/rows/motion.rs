@@ -69,26 +69,61 @@ pub fn evaluate_motions(
     query: &Query<'_>,
     take: &mut dyn FnMut(&[MotionRow]) -> bool,
 ) -> Result<QueryEffort, Diagnostic> {
-    let motions = states.len().saturating_sub(1);
-    evaluate_blocks(states, (motions, query.threads), &|block| motions_of_block(scene, states, query, block), take)
+    let motions = Motions { from: states, to: states, ahead: 1, count: states.len().saturating_sub(1) };
+    motions.evaluate(scene, query, take)
 }
 
-fn motions_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<MotionRow> {
-    let mut checker = Checker::new(scene, query.options);
-    let mut state = query.start.clone();
-    let (mut rows, mut times_s) = (Vec::with_capacity(BLOCK), Vec::new());
-    for index in block * BLOCK..(states.len() - 1).min((block + 1) * BLOCK) {
-        for (robot, q) in states.of(index) {
-            state.set_q(scene, robot, q)?;
-        }
-        let moves: Vec<(RobotId, &[f64])> = states.of(index + 1).collect();
-        let begin = Instant::now();
-        rows.push(MotionRow { index, hit: first_contact(&mut checker, &state, &moves, query)? });
-        if query.is_timed {
-            times_s.push(begin.elapsed().as_secs_f64());
-        }
+/// Like [`evaluate_motions`], for the motion from each state to the one in the same row of `to`, as far as both have rows.
+///
+/// # Errors
+/// [`Diagnostic`] if the states do not belong to this scene.
+pub fn evaluate_edges(
+    scene: &Scene,
+    from: &QueryStates,
+    to: &QueryStates,
+    query: &Query<'_>,
+    take: &mut dyn FnMut(&[MotionRow]) -> bool,
+) -> Result<QueryEffort, Diagnostic> {
+    Motions { from, to, ahead: 0, count: from.len().min(to.len()) }.evaluate(scene, query, take)
+}
+
+/// Motions from states to others.
+#[derive(Clone, Copy)]
+struct Motions<'s> {
+    from: &'s QueryStates,
+    to: &'s QueryStates,
+    /// The row of the end less that of the beginning.
+    ahead: usize,
+    count: usize,
+}
+
+impl Motions<'_> {
+    fn evaluate(
+        self,
+        scene: &Scene,
+        query: &Query<'_>,
+        take: &mut dyn FnMut(&[MotionRow]) -> bool,
+    ) -> Result<QueryEffort, Diagnostic> {
+        evaluate_blocks(self.from, (self.count, query.threads), &|block| self.block(scene, query, block), take)
     }
-    Ok((rows, QueryEffort { stats: checker.stats(), times_s }))
+
+    fn block(self, scene: &Scene, query: &Query<'_>, block: usize) -> BlockRows<MotionRow> {
+        let mut checker = Checker::new(scene, query.options);
+        let mut state = query.start.clone();
+        let (mut rows, mut times_s) = (Vec::with_capacity(BLOCK), Vec::new());
+        for index in block * BLOCK..self.count.min((block + 1) * BLOCK) {
+            for (robot, q) in self.from.of(index) {
+                state.set_q(scene, robot, q)?;
+            }
+            let moves: Vec<(RobotId, &[f64])> = self.to.of(index + self.ahead).collect();
+            let begin = Instant::now();
+            rows.push(MotionRow { index, hit: first_contact(&mut checker, &state, &moves, query)? });
+            if query.is_timed {
+                times_s.push(begin.elapsed().as_secs_f64());
+            }
+        }
+        Ok((rows, QueryEffort { stats: checker.stats(), times_s }))
+    }
 }
 
 /// The first contact between any sides.
