@@ -114,7 +114,7 @@ class Reach:
     solutions
         `(N,)` uint16: number of joint states within the limits that bring the tool there; 0: out of reach.
     free
-        `(N,)` uint16: number of those in which nothing touches.
+        `(N,)` uint16: number of those in which the robot touches nothing.
     q
         `(N, dof)`, rad or m: of these the nearest to the state at the start; NaN without one.
     """

@@ -212,16 +212,17 @@ def test_ctrl_c_ends_a_long_call() -> None:
 
 def test_motions_are_those_of_the_command_and_free_between_the_states(command: Path, exchange: Path, tmp_path: Path) -> None:
     checker = er.Checker(er.Cell.load(exchange), threads=2)
-    q = checker.start + 0.4 * states(len(checker.joints), 120, seed=3)
+    # From 1000 states on, the command proves pairs out of reach, as the package does: the proofs end at the same shares.
+    q = checker.start + 0.4 * states(len(checker.joints), 1002, seed=3)
     found = checker.edges(q[:-1], q[1:])
     rows = rows_of(command, [str(exchange), "--ask", "time"], checker, q, tmp_path)
     assert [float(row[2]) for row in rows] == found.free_share.tolist()
     assert [row[1] == "0" for row in rows] == found.free.tolist() and [row[-1] == "1" for row in rows] == found.certain.tolist()
     assert [row[3] or None for row in rows] == found.a and [row[4] or None for row in rows] == found.b
-    assert 10 < found.free.sum() < 110
+    assert 100 < found.free.sum() < 900
     # Nothing touches on what is free, and something does where the motion ends with certainty.
     share = np.linspace(0, 1, 40)[:, None]
-    for i, (begin, end) in enumerate(zip(q[:-1], q[1:], strict=True)):
+    for i, (begin, end) in enumerate(zip(q[:60], q[1:61], strict=True)):
         steps = begin + (end - begin) * share * found.free_share[i] * (1 - 1e-9)
         assert not checker.collides(steps).any() or found.free_share[i] == 0.0
     assert checker.edges(q[:1], q[:1]).free.tolist() == [not checker.collides(q[:1])[0]]

@@ -26,6 +26,7 @@ from conftest import ROOT
 from elbowroom import sweep
 from elbowroom.poses import matrix as elbowroom_matrix
 from elbowroom.sweep import driver
+from elbowroom.sweep.functions import name_of
 from elbowroom.sweep.shard import Job, compute
 from elbowroom.sweep.states import Grid, Random, Sobol, States, Table
 
@@ -93,10 +94,47 @@ def test_a_tolerance_and_a_function_of_ones_own(tmp_path: Path) -> None:
     found = columns(own)
     assert (found["free"] == ~checker.collides(q)).all() and own.counts["free"] == found["free"].sum()
     assert own.least["norm"] == np.sum(q * q, axis=1).min() and found["name"][3] == f"{q[3, 0]:.1f}"
-    with pytest.raises(er.ArrayError, match="the column `a` has the shape 3"):
+    with pytest.raises(er.ArrayError, match=r"the column `a` has the shape \(3,\)"):
         sweep.run(task(tmp_path / "short", Random(900), ask=lambda _, q: {"a": [None] * 3}))
     with pytest.raises(er.ArgumentError, match="a dict of columns"):
         sweep.run(task(tmp_path / "none", Random(900), ask=lambda _, q: np.zeros(len(q))))
+    wrong: list[tuple[Any, str]] = [
+        (lambda _, q: {}, "a dict of columns"),
+        (lambda _, q: {"a": 3.0}, r"the column `a` has the shape \(\)"),
+        (lambda _, q: {"a": q}, "the column `a` has the shape"),
+        (lambda _, q: {"a": q[:, 0].astype(complex)}, "has the type complex128"),
+        (lambda _, q: {"a": [object()] * len(q)}, "has the type object"),
+        (lambda _, q: {3: q[:, 0]}, "3 is no name of a column"),
+        (lambda _, q: {"index": q[:, 0]}, "'index' is no name"),
+    ]
+    for k, (function, message) in enumerate(wrong):
+        with pytest.raises(er.Error, match=message):
+            sweep.run(task(tmp_path / f"wrong {k}", Random(900), ask=function))
+
+
+def scaled(factor: Any) -> Any:
+    return lambda _, q: {"v": factor * q[:, 0]}
+
+
+def test_functions_that_differ_are_two_tasks(tmp_path: Path) -> None:
+    def partly(_: er.Checker, q: npt.NDArray[np.float64], factor: float) -> dict[str, Any]:
+        return {"v": factor * q[:, 0]}
+
+    pairs: list[tuple[Any, Any]] = [
+        (scaled(1.0), scaled(2.0)),
+        (lambda _, q: {"v": q[:, 0]}, lambda _, q: {"v": q[:, 1]}),
+        (lambda _, q: {"v": q[:, 0] + 1.0}, lambda _, q: {"v": q[:, 0] + 2.0}),
+        (functools.partial(partly, factor=1.0), functools.partial(partly, factor=2.0)),
+        (scaled(np.arange(6.0)), scaled(np.arange(6.0) + 1)),
+    ]
+    for one, other in pairs:
+        assert name_of(one) != name_of(other)
+    assert name_of(scaled(1.0)) == name_of(scaled(1.0))
+    with pytest.raises(er.ArgumentError, match="nothing tells"):
+        name_of(scaled(object()))
+    sweep.run(task(tmp_path, Random(300), ask=scaled(1.0)))
+    with pytest.raises(er.Error, match="not a part of this sweep"):
+        sweep.run(task(tmp_path, Random(300), ask=scaled(2.0)))
 
 
 def placements(folder: Path, cell: Path, **others: Any) -> sweep.Task:
@@ -128,6 +166,35 @@ def test_places_of_a_base_are_compared(tmp_path: Path, exchange: Path) -> None:
     places = sweep.Placements(sweep.BaseTable(tmp_path / "bases.npy"), tmp_path / "spots.npy", "left", turns=4)
     table = replace(table, states=places)
     assert (columns(sweep.run(table))["free"] == found["free"]).all()
+
+
+def test_a_cell_that_has_changed_and_parts_that_are_gone_are_told(tmp_path: Path, exchange: Path) -> None:
+    cell = tmp_path / "cell.toml"
+    cell.write_text(exchange.read_text().replace("../models", str(exchange.parent.parent / "models")))
+    asked = placements(tmp_path, cell)
+    result = sweep.run(asked)
+    (result.folder / "part-000003.parquet").rename(tmp_path / "gone")
+    with pytest.raises(er.FileError, match=r"part-000003.parquet: .*\n  write: remove the part, and run the sweep again"):
+        result.placement()
+    (tmp_path / "gone").rename(result.folder / "part-000003.parquet")
+    cell.write_text(cell.read_text() + '[object.block]\nshape = "box"\nat = [0, 0, 900]\nsize = [100, 100, 100]\n')
+    with pytest.raises(er.Error, match="not a part of this sweep"):
+        sweep.run(asked)
+
+
+def test_rows_that_are_no_targets_or_places_are_told_before_anything_is_computed(tmp_path: Path, exchange: Path) -> None:
+    asked = placements(tmp_path, exchange)
+    spots = np.load(tmp_path / "spots.npy")
+    spots[21, 3:] = 0.0
+    np.save(tmp_path / "spots.npy", spots)
+    with pytest.raises(er.ArrayError, match="spots.npy: row 21 has a direction of length 0"):
+        sweep.run(asked)
+    np.save(tmp_path / "bases.npy", np.array([[0, 0, 0, 0, 0, 0, 1], [0, 0, 0, 0, 0, 0, 0]], dtype=float))
+    rows = sweep.Placements(sweep.BaseTable(tmp_path / "bases.npy"), str(tmp_path / "bases.npy"), "left")
+    with pytest.raises(er.ArrayError, match="bases.npy: row 1 has a quaternion of length 0"):
+        sweep.run(sweep.Task(exchange, rows, tmp_path / "out2"))
+    with pytest.raises(er.ArgumentError, match="`between`, `level` and `tolerance_m` do not fit"):
+        placements(tmp_path, exchange, between="left,pallet")
 
 
 def test_a_base_that_turns_keeps_its_place_in_a_table() -> None:

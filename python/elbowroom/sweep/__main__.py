@@ -37,8 +37,12 @@ def _tell(result: Result) -> None:
         print(result.placement())
     if importlib.util.find_spec("matplotlib"):
         picture = result.folder / "summary.png"
-        result.picture(picture)
-        print(f"picture: {picture}")
+        try:
+            result.picture(picture)
+        except Error as error:
+            print(f"no picture: {str(error).partition(chr(10))[0]}")
+        else:
+            print(f"picture: {picture}")
 
 
 if __name__ == "__main__":

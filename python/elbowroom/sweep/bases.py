@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from elbowroom.errors import ArgumentError
+from elbowroom.errors import ArgumentError, ArrayError
 from elbowroom.poses import matrix
-from elbowroom.sweep.tables import read
+from elbowroom.sweep.tables import finite, read
 
 Pose = npt.NDArray[np.float64]
 #: First value, last value, and how many, evenly spaced.
@@ -39,10 +39,15 @@ class Bases(ABC):
         """Return the files that the places come from."""
         return []
 
+    def check(self) -> None:
+        """Refuse places that are none."""
+
 
 @dataclass(frozen=True)
 class BaseGrid(Bases):
     """All combinations of evenly spaced coordinates and turns about the vertical axis; the turn changes fastest.
+
+    Of a single value the middle between first and last is taken.
 
     Parameters
     ----------
@@ -104,6 +109,13 @@ class BaseTable(Bases):
     def files(self) -> list[Path]:
         """Return the file."""
         return [self.file]
+
+    def check(self) -> None:
+        """Refuse rows that are no poses."""
+        rows = finite(self.file, read(self.file, (7,)))
+        zero = np.flatnonzero(np.linalg.norm(rows[:, 3:], axis=1) < 1e-9)
+        if len(zero):
+            raise ArrayError(f"{self.file}: row {zero[0]} has a quaternion of length 0\n  write: one of length 1")
 
 
 def of_manifest(bases: dict[str, Any]) -> Bases:

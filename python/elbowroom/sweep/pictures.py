@@ -25,7 +25,13 @@ _BINS = 48
 def draw(result: Result, axes: tuple[str, str] | None) -> Figure:
     """Draw a map over two joints, or over the places of the base."""
     about = result.manifest()["about"]
-    return _placement(result.placement()) if "base" in about else _states(result, about, axes)
+    if result.rows == 0:
+        raise ArgumentError("there is nothing to draw\n  write: a sweep with rows")
+    if "base" in about:
+        if axes is not None:
+            raise ArgumentError("`axes` are joints, and the picture shows places\n  write: picture() without them")
+        return _placement(result.placement())
+    return _states(result, about, axes)
 
 
 def _figure() -> tuple[Figure, Any]:
@@ -44,11 +50,15 @@ def _placement(found: Placement) -> Figure:
     figure.colorbar(drawn, label="targets reached without contact, %, in the best turn")
     top = found.best(1)[0]
     x, y = found.bases[top, :2]
-    yaw = 2 * np.arctan2(*found.bases[top, 5:7])
-    span = max(np.ptp(xy[:, 0]), np.ptp(xy[:, 1]), 1e-3)
-    plot.plot(x, y, "*", color="red", markersize=14)
-    plot.arrow(x, y, 0.08 * span * np.cos(yaw), 0.08 * span * np.sin(yaw), color="red", width=0.006 * span)
-    plot.set(xlabel="x of the base, m", ylabel="y of the base, m", aspect="equal")
+    span = max(np.ptp(xy[:, 0]), np.ptp(xy[:, 1]), 0.5)
+    if found.reached[top] > 0:
+        heading = found.heading_rad(top)
+        plot.plot(x, y, "*", color="red", markersize=14)
+        plot.arrow(x, y, 0.08 * span * np.cos(heading), 0.08 * span * np.sin(heading), color="red", width=0.006 * span)
+    # Room around a single place or a line of places.
+    middle, half = 0.5 * (xy.min(axis=0) + xy.max(axis=0)), 0.5 * np.ptp(xy, axis=0) + 0.1 * span
+    low, high = middle - np.maximum(half, 0.25 * span), middle + np.maximum(half, 0.25 * span)
+    plot.set(xlabel="x of the base, m", ylabel="y of the base, m", aspect="equal", xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     plot.set_title(f"best: {found.reached[top]:,} of {found.targets:,} targets from ({x:.2f}, {y:.2f}) m")
     return figure
 
@@ -60,39 +70,43 @@ def _size(count: int) -> float:
 def _states(result: Result, about: dict[str, Any], axes: tuple[str, str] | None) -> Figure:
     """Draw the mean distance, or the share of states, over two joints and all values of the others."""
     joints, limits = about["joints"], ranges(np.array(about["limits"]))
+    if len(joints) < 2:
+        raise ArgumentError("the model has one joint\n  write: a sweep of two joints or more")
     chosen = [_joint(joints, name) for name in axes or (joints[min(1, len(joints) - 1)], joints[min(2, len(joints) - 1)])]
     states = _read(result.manifest()["task"]["states"])
     shape = [states.steps[k] if isinstance(states, Grid) else _BINS for k in chosen]
     low, high = limits[chosen].T
-    column, is_distance = _column(result)
+    column, factor, label = _column(result)
     sums, counts = np.zeros(shape), np.zeros(shape)
     for batch in result.batches():
         q = states.rows(int(batch["index"][0]), len(batch["index"]), np.array(about["limits"]))[:, chosen]
         steps = np.array(shape) - isinstance(states, Grid)
         at = np.clip(((q - low) / (high - low) * steps + 0.5 * isinstance(states, Grid)).astype(int), 0, np.array(shape) - 1)
-        values = batch[column].astype(float) if is_distance else (batch[column] != 0).astype(float)
+        values = batch[column].astype(float) if column in result.least else (batch[column] != 0).astype(float)
         known = np.isfinite(values)
         place = (at[known, 0], at[known, 1])
         np.add.at(sums, place, values[known])
         np.add.at(counts, place, 1.0)
     figure, plot = _figure()
-    values = np.where(counts > 0, (1e3 if is_distance else 100.0) * sums / np.maximum(counts, 1.0), np.nan)
-    drawn = plot.imshow(
-        values.T, origin="lower", aspect="auto", extent=(low[0], high[0], low[1], high[1]), cmap="viridis" if is_distance else "magma"
-    )
-    figure.colorbar(drawn, label="mean distance, mm; contact is 0" if is_distance else f"states with `{column}`, %")
+    values = np.where(counts > 0, factor * sums / np.maximum(counts, 1.0), np.nan)
+    drawn = plot.imshow(values.T, origin="lower", aspect="auto", extent=(low[0], high[0], low[1], high[1]), cmap="viridis")
+    figure.colorbar(drawn, label=label)
     plot.set(xlabel=f"{joints[chosen[0]]}, rad or m", ylabel=f"{joints[chosen[1]]}, rad or m")
     plot.set_title(f"{result.rows:,} states; the other joints anywhere")
     return figure
 
 
-def _column(result: Result) -> tuple[str, bool]:
-    """Return the column to draw, and whether it is a distance."""
+def _column(result: Result) -> tuple[str, float, str]:
+    """Return the column to draw, the factor to its unit, and what is drawn: distances, else shares, else means."""
     if "distance_m" in result.least:
-        return "distance_m", True
+        return "distance_m", 1e3, "mean distance, mm; contact is 0"
     if result.counts:
-        return next(iter(result.counts)), False
-    raise ArgumentError("no column is a distance or a number\n  write: a sweep with a column of numbers")
+        name = next(iter(result.counts))
+        return name, 100.0, f"states with `{name}`, %"
+    if result.least:
+        name = next(iter(result.least))
+        return name, 1.0, f"mean of `{name}`"
+    raise ArgumentError("no column has numbers\n  write: a sweep with a column of numbers")
 
 
 def _joint(joints: list[str], name: str) -> int:

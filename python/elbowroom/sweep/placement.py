@@ -49,13 +49,17 @@ class Placement:
         order: npt.NDArray[np.int64] = np.lexsort((-self.states, -self.reached))[:count]
         return order
 
+    def heading_rad(self, place: int) -> float:
+        """Return the direction of the base's x axis seen from above, from the x axis of the world."""
+        x, y, z, w = self.bases[place, 3:]
+        return float(np.arctan2(2 * (x * y + z * w), 1 - 2 * (y * y + z * z)))
+
     def __str__(self) -> str:
         """Return the five best places for people."""
         lines = [f"best of {len(self.bases):,} places of the base, {self.targets:,} targets:"]
         for i in self.best(5):
             x, y, z = self.bases[i, :3]
-            qz, qw = self.bases[i, 5:]
-            turn = round(float(np.degrees(2 * np.arctan2(qz, qw)))) % 360
+            turn = round(float(np.degrees(self.heading_rad(i)))) % 360
             share = 100 * self.reached[i] / self.targets
-            lines.append(f"{i:>6}: x {x:.3f}, y {y:.3f}, z {z:.3f} m, turned {turn}°: {self.reached[i]:,} reached ({share:.1f} %)")
+            lines.append(f"{i:>6}: x {x:.3f}, y {y:.3f}, z {z:.3f} m, x axis at {turn}°: {self.reached[i]:,} reached ({share:.1f} %)")
         return "\n  ".join(lines)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import inspect
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
@@ -26,6 +25,7 @@ ASK = ("collision", "distance", "tolerance", "reach")
 
 # Rows whose answers are compared to tell whether two models are one.
 _PROBES = 256
+_PROBED_TARGETS, _PROBED_PLACES = 64, 8
 
 
 class Question(ABC):
@@ -126,9 +126,11 @@ class ReachQuestion(Question):
             yield place, max(first - place * targets, 0), min(first + count - place * targets, targets)
 
     def fingerprint(self) -> str:
-        """Return a hash of the joint values for some targets at the first and the last place."""
-        targets = self._targets[:: max(1, len(self._targets) // _PROBES)]
-        places = [self._bases.pose(i, self._query.base) for i in {0, self._bases.count() - 1}]
+        """Return a hash of the joint values for some targets at some places."""
+        targets = np.ascontiguousarray(self._targets[:: max(1, len(self._targets) // _PROBED_TARGETS)])
+        last = self._bases.count() - 1
+        chosen = sorted({round(last * k / max(1, _PROBED_PLACES - 1)) for k in range(_PROBED_PLACES)})
+        places = [self._bases.pose(i, self._query.base) for i in chosen]
         found = [self._query.evaluate(targets, place) for place in places]
         values = [array for reach in found for array in (reach.solutions, reach.free, reach.q)]
         return _hash([self._query.joints], (self._query.base, self._targets, *values))
@@ -138,30 +140,28 @@ class ReachQuestion(Question):
         return {"targets": len(self._targets), "base": self._query.base.tolist()}
 
 
-def name_of(ask: str | Function) -> str:
-    """Return what tells a question from others: of a function its name and a hash of its source."""
-    if isinstance(ask, str):
-        return ask
-    try:
-        source = inspect.getsource(ask)
-    except (OSError, TypeError):
-        source = ""
-    name = getattr(ask, "__qualname__", repr(ask))
-    return f"{name} {hashlib.sha256(source.encode()).hexdigest()[:16]}"
-
-
 def _checked(columns: dict[str, Column], count: int) -> dict[str, Column]:
     """Refuse columns that no part can hold."""
     if not isinstance(columns, dict) or not columns:
-        raise ArgumentError(f"the function returned {type(columns).__name__}\n  write: a dict of columns, {count} values each")
-    checked = {name: values if isinstance(values, list) else np.asarray(values) for name, values in columns.items()}
-    for name, values in checked.items():
-        if len(values) != count or (isinstance(values, np.ndarray) and values.ndim != 1):
-            shape = values.shape if isinstance(values, np.ndarray) else len(values)
-            raise ArrayError(f"the column `{name}` has the shape {shape}\n  write: one value for each of {count} states")
-        if name == "index":
-            raise ArgumentError("`index` is the number of the state\n  write: another name for the column")
-    return checked
+        raise ArgumentError(f"the function returned {columns!r:.40}\n  write: a dict of columns, {count} values each")
+    return {name: _column(name, values, count) for name, values in columns.items()}
+
+
+def _column(name: Any, values: Any, count: int) -> Column:
+    if not isinstance(name, str) or name == "index":
+        raise ArgumentError(f"{name!r} is no name of a column; `index` is the number of the row\n  write: another name")
+    if isinstance(values, list) and all(value is None or isinstance(value, str) for value in values):
+        names: list[str | None] = values
+        shape: tuple[int, ...] = (len(names),)
+        column: Column = names
+    else:
+        column = np.asarray(values)
+        shape = column.shape
+        if column.dtype.kind not in "bui" and column.dtype not in (np.float32, np.float64):
+            raise ArrayError(f"the column `{name}` has the type {column.dtype}\n  write: numbers, bool, or a list of texts")
+    if shape != (count,):
+        raise ArrayError(f"the column `{name}` has the shape {shape}\n  write: one value for each of {count} states")
+    return column
 
 
 def _hash(names: list[Any], arrays: Iterable[npt.NDArray[Any]]) -> str:

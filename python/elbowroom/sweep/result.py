@@ -62,10 +62,22 @@ class Result:
             raise _refused(folder, error) from error
 
     def batches(self) -> Iterator[dict[str, npt.NDArray[Any]]]:
-        """Return the columns of one part after another, as NumPy arrays."""
+        """Return the columns of one part after another, as NumPy arrays.
+
+        Raises
+        ------
+        FileError
+            If a part is missing or has other rows than the manifest says.
+        """
         pq = imported("pyarrow.parquet", "pyarrow")
-        for file in sorted(self.folder.glob("part-*.parquet"), key=lambda file: (len(file.name), file.name)):
-            table = pq.read_table(file)
+        for part in self.manifest()["parts"]:
+            file = self.folder / part["file"]
+            try:
+                table = pq.read_table(file)
+            except OSError as error:
+                raise _broken(file, str(error)) from error
+            if table.num_rows != part["rows"]:
+                raise _broken(file, f"has {table.num_rows} rows, the manifest says {part['rows']}")
             yield {name: np.asarray(table[name].to_numpy()) for name in table.column_names}
 
     def manifest(self) -> dict[str, Any]:
@@ -125,6 +137,11 @@ def _manifest(folder: Path) -> dict[str, Any]:
         return table
     except (OSError, ValueError) as error:
         raise _refused(folder, error) from error
+
+
+def _broken(file: Path, what: str) -> FileError:
+    hint = "remove the part, and run the sweep again"
+    return FileError(f"{file}: {what}\n  write: {hint}", str(file), None, what, hint)
 
 
 def _refused(folder: Path, error: Exception) -> FileError:

@@ -54,7 +54,7 @@ def compute(job: Job, shard: int, threads: int | None = None) -> Part:
         # One at a time: a worker of a cluster may see many tasks.
         _QUESTIONS.clear()
         question = job.task.question(threads)
-        if question.fingerprint() != job.fingerprint:
+        if job.task.fingerprint(question) != job.fingerprint:
             text = f"{job.task.model}: another model than that of the driver\n  write: the same files on all machines"
             raise Error(text)
         _QUESTIONS[key] = question

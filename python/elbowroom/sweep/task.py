@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 
 from elbowroom import _elbowroom
-from elbowroom.errors import ArgumentError, FileError
+from elbowroom.errors import ArgumentError, ArrayError, FileError
 from elbowroom.sweep.bases import BaseGrid, Bases, BaseTable
-from elbowroom.sweep.questions import ASK, Function, Question, ReachQuestion, StateQuestion, name_of
+from elbowroom.sweep.functions import name_of
+from elbowroom.sweep.questions import ASK, Function, Question, ReachQuestion, StateQuestion
 from elbowroom.sweep.states import Grid, Random, Sobol, States, Table
 from elbowroom.sweep.tables import finite, read
 
@@ -45,13 +46,32 @@ class Placements:
     """
 
     bases: Bases
-    targets: Path
+    targets: str | Path
     robot: str | None = None
     turns: int = 1
 
     def files(self) -> list[Path]:
         """Return the files of targets and places."""
-        return [self.targets, *self.bases.files()]
+        return [Path(self.targets), *self.bases.files()]
+
+    def rows(self) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+        """Read and check the targets and the places.
+
+        Raises
+        ------
+        ArrayError
+            If a row is no target or no place.
+        """
+        file = Path(self.targets)
+        targets = np.ascontiguousarray(finite(file, read(file, (6, 7))))
+        zero = np.flatnonzero(np.linalg.norm(targets[:, 3:], axis=1) < 1e-9)
+        if len(zero):
+            what = "direction" if targets.shape[1] == 6 else "quaternion"
+            raise ArrayError(f"{file}: row {zero[0]} has a {what} of length 0\n  write: one of length 1")
+        self.bases.check()
+        if not (len(targets) and self.bases.count()):
+            raise ArgumentError("there is no target or no place of the base\n  write: one or more of each")
+        return targets
 
 
 @dataclass(frozen=True)
@@ -101,6 +121,8 @@ class Task:
             _chosen("ask", self.asked, ASK)
         if isinstance(self.states, Placements) != (self.asked == "reach"):
             raise ArgumentError('`ask` does not fit\n  write: ask = "reach" with placements, something else with states')
+        if self.asked == "reach" and (self.between, self.level, self.tolerance_m) != (None, "auto", 0.0):
+            raise ArgumentError("`between`, `level` and `tolerance_m` do not fit\n  write: none of them with [reach]")
         if not (0.0 <= self.tolerance_m < math.inf):
             raise ArgumentError(f"`tolerance_m` is {self.tolerance_m}\n  write: metres, 0 or more, as 0.02")
         _chosen("executor", self.executor, _EXECUTORS)
@@ -140,22 +162,24 @@ class Task:
         if isinstance(self.states, Placements):
             placed = self.states
             query = _elbowroom.ReachQuery(source, placed.robot, turns=placed.turns, threads=threads)
-            targets = finite(placed.targets, read(placed.targets, (6, 7)))
-            if not (len(targets) and placed.bases.count()):
-                raise ArgumentError("there is no target or no place of the base\n  write: one or more of each")
-            return ReachQuestion(query, placed.bases, np.ascontiguousarray(targets))
+            return ReachQuestion(query, placed.bases, placed.rows())
         checker = _elbowroom.Checker(source, level=self.level, between=self.between, threads=threads)
         return StateQuestion(checker, self.states, self.asked, self.tolerance_m)
+
+    def fingerprint(self, question: Question) -> str:
+        """Return a hash, in hex, of the files of the model that the task names, and of what it answers."""
+        files = [checksum(Path(file)) for file in (self.model, self.srdf) if file is not None]
+        return hashlib.sha256(" ".join([*files, question.fingerprint()]).encode()).hexdigest()
 
     def identity(self, question: Question) -> dict[str, Any]:
         """Return what the answers depend on. Parts of one sweep have the same; where the work is done does not count."""
         return {
             "elbowroom": _elbowroom.__version__,
             "model": Path(self.model).name,
-            "fingerprint": question.fingerprint(),
+            "fingerprint": self.fingerprint(question),
             "files": [checksum(file) for file in self.states.files()],
             "states": _plain(self.states),
-            "ask": name_of(self.asked),
+            "ask": self.asked if isinstance(self.asked, str) else name_of(self.asked),
             "tolerance_m": self.tolerance_m,
             "level": self.level,
             "between": self.between,
@@ -254,7 +278,9 @@ def _whole(table: dict[str, Any], key: str, default: int | None = None) -> int:
 
 def _rows(table: dict[str, Any], folder: Path) -> States | Placements:
     """Return what the rows are: states, or placements."""
-    tables = {key: table[key] for key in ("states", "reach", "bases") if isinstance(table.get(key), dict)}
+    tables = {key: table[key] for key in ("states", "reach", "bases") if key in table}
+    if not all(isinstance(value, dict) for value in tables.values()):
+        raise ArgumentError("`states`, `reach` and `bases` are tables\n  write: [states]")
     if set(tables) == {"states"}:
         return _states(tables["states"], folder)
     if set(tables) != {"reach", "bases"}:

@@ -8,15 +8,18 @@ use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::LinkId;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
+use elbowroom_proximity::penetration;
 use elbowroom_robot::{GeometryId, RobotId};
-use elbowroom_scene::{Checker, CheckerOptions, PairEdit, Reason, Scene, SceneError, SceneState};
+use elbowroom_scene::{
+    Checker, CheckerOptions, MatrixError, PairEdit, Reason, Scene, SceneError, SceneState, Selection,
+};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 /// Starts of the numeric method per target, for robots without a closed form.
 const STARTS: usize = 16;
 /// Number of targets that a thread takes at once.
 const BLOCK: usize = 32;
-/// What stands nearer (m) to links that no joint moves may stay so: the floor, a pedestal.
+/// What is nearer (m) to links that no joint moves may be touched: the floor, a pedestal. They may sink in by so much more, too.
 const STANDS_ON_M: f64 = 1e-3;
 
 /// A place for the tool, in the world.
@@ -59,7 +62,7 @@ impl ReachTarget {
 pub struct Reach {
     /// Number of joint states within the limits that bring the tool there; 0: out of reach.
     pub solutions: usize,
-    /// Number of those in which nothing touches.
+    /// Number of those in which the robot touches nothing.
     pub free: usize,
     /// Of these the nearest to the state at the start, rad or m; of several turns the first that has one.
     pub q: Option<Vec<f64>>,
@@ -100,7 +103,16 @@ pub struct ReachQuery {
     robot: RobotId,
     solver: IkSolver,
     start: SceneState,
+    stands_on: Vec<Standing>,
     turns: NonZeroUsize,
+}
+
+/// A link that no joint moves, something that it touches in the model, and how deep (m) it is inside of it.
+#[derive(Debug, Clone, Copy)]
+struct Standing {
+    a: GeometryId,
+    b: GeometryId,
+    depth_m: f64,
 }
 
 impl ReachQuery {
@@ -116,22 +128,23 @@ impl ReachQuery {
     /// A robot of a model; the tool is a frame of a link.
     ///
     /// Links that no joint moves are tested too, as they may stand somewhere else; what they touch in the model, such as the
-    /// floor, they may touch everywhere.
+    /// floor, they may touch everywhere, no deeper than there. Contacts of other things with each other do not count.
     ///
     /// # Errors
     /// [`Diagnostic`] if the scene refuses the model.
     pub fn new(model: &QueryModel, robot: RobotId, link: LinkId, tool_in_link: Pose) -> Result<Self, Diagnostic> {
         let refused = |e: SceneError| Diagnostic::new(&model.file, None, e);
-        let mut scene = model.scene(OutOfReachProofs::Omit)?;
+        let scene = model.scene(OutOfReachProofs::Omit)?;
         let mut start = SceneState::new(&scene);
         for (i, other) in model.robots.iter().enumerate() {
             start.set_q(&scene, RobotId(i), &other.start).map_err(refused)?;
         }
-        scene = with_standing_links(scene, robot, &start).map_err(|e| Diagnostic::new(&model.file, None, e))?;
+        let (scene, stands_on) =
+            with_standing_links(scene, robot, &start).map_err(|e| Diagnostic::new(&model.file, None, e))?;
         let options = IkOptions { restarts: STARTS, ..IkOptions::default() };
         let solver = IkSolver::new(&model.robots[robot.0].robot.chain, link, tool_in_link, options);
         let turns = NonZeroUsize::MIN;
-        Ok(Self { file: model.file.clone(), scene, robot, solver, start, turns })
+        Ok(Self { file: model.file.clone(), scene, robot, solver, start, stands_on, turns })
     }
 
     /// Sets the number of turns about the axis that are tried for each [`ReachTarget::Axis`]; without it 1.
@@ -165,11 +178,13 @@ impl ReachQuery {
         for robot in (0..scene.robots().len()).map(RobotId) {
             state.set_q(&scene, robot, self.start.q(robot)).map_err(|e| refused(e.to_string()))?;
         }
+        let is_sunk = |on: &Standing| depth_m(&scene, &state, on.a, on.b) > on.depth_m + STANDS_ON_M;
+        let is_placed = !self.stands_on.iter().any(is_sunk);
         let mut reached = vec![Reach::default(); targets.len()];
         let open = AtomicUsize::new(0);
         let blocks: Vec<_> = targets.chunks(BLOCK).zip(reached.chunks_mut(BLOCK)).map(std::sync::Mutex::new).collect();
         let work = || {
-            let mut worker = Worker::new(self, &scene, state.clone());
+            let mut worker = Worker::new(self, &scene, state.clone(), is_placed);
             while let Some(block) = blocks.get(open.fetch_add(1, Ordering::Relaxed)) {
                 let mut block = block.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                 let (targets, reached) = &mut *block;
@@ -191,12 +206,12 @@ impl ReachQuery {
     }
 }
 
-/// Tests the links of a robot that no joint moves, but against what they stand on.
+/// Tests the links of a robot that no joint moves, but against what they stand on, which is returned.
 fn with_standing_links(
     scene: Scene,
     robot: RobotId,
     start: &SceneState,
-) -> Result<Scene, elbowroom_scene::MatrixError> {
+) -> Result<(Scene, Vec<Standing>), MatrixError> {
     let is_of_robot = |id: GeometryId| matches!(id, GeometryId::Link { robot: of, .. } if of == robot);
     let entries = scene.allowed_collision_matrix().entries().iter();
     let standing = entries.filter(|e| e.reason == Reason::NoJointBetween && is_of_robot(e.a) != is_of_robot(e.b));
@@ -207,18 +222,32 @@ fn with_standing_links(
     }
     let tested = scene.clone().with_allowed_collision_matrix(matrix.clone())?;
     let mut checker = Checker::new(&tested, CheckerOptions::default());
+    let mut stands_on = Vec::new();
     for (a, b) in standing {
         if checker.between(a.into(), b.into()).within(start, STANDS_ON_M).is_some() {
             matrix.edit(&scene, a, b, PairEdit::Skip("the robot stands on it".into()))?;
+            stands_on.push(Standing { a, b, depth_m: depth_m(&scene, start, a, b) });
         }
     }
-    scene.with_allowed_collision_matrix(matrix)
+    Ok((scene.with_allowed_collision_matrix(matrix)?, stands_on))
+}
+
+/// The depth (m) to which two geometries are inside of each other; of meshes that of their hulls.
+fn depth_m(scene: &Scene, state: &SceneState, a: GeometryId, b: GeometryId) -> f64 {
+    let (Some(a_in_world), Some(b_in_world)) = (state.pose(scene, a), state.pose(scene, b)) else { return 0.0 };
+    let pairs = scene.shapes(a).flat_map(|a| scene.shapes(b).map(move |b| (a, b)));
+    let depth = |((a, in_a), (b, in_b))| {
+        penetration(a, &(a_in_world * in_a), b, &(b_in_world * in_b)).map_or(0.0, |found| found.depth)
+    };
+    pairs.map(depth).fold(0.0, f64::max)
 }
 
 /// What one thread works with.
 struct Worker<'q> {
     robot: RobotId,
     turns: usize,
+    /// Whether the base does not sink into what it stands on.
+    is_placed: bool,
     world_in_base: Pose,
     seed: Vec<f64>,
     solver: IkSolver,
@@ -228,10 +257,11 @@ struct Worker<'q> {
 }
 
 impl<'q> Worker<'q> {
-    fn new(query: &ReachQuery, scene: &'q Scene, state: SceneState) -> Self {
+    fn new(query: &ReachQuery, scene: &'q Scene, state: SceneState, is_placed: bool) -> Self {
         Self {
             robot: query.robot,
             turns: query.turns.get(),
+            is_placed,
             world_in_base: scene.robots()[query.robot.0].base_in_world.inverse(),
             seed: state.q(query.robot).to_vec(),
             solver: query.solver.clone(),
@@ -256,6 +286,9 @@ impl<'q> Worker<'q> {
     }
 
     fn is_free(&mut self, q: &[f64]) -> bool {
-        self.state.set_q(self.scene, self.robot, q).is_ok() && self.checker.collides(&self.state).is_none()
+        if !(self.is_placed && self.state.set_q(self.scene, self.robot, q).is_ok()) {
+            return false;
+        }
+        self.checker.between(Selection::Robot(self.robot), Selection::All).collides(&self.state).is_none()
     }
 }

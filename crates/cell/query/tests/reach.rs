@@ -16,8 +16,12 @@ const ARM: RobotId = RobotId(0);
 
 /// An arm on a floor, beside a post and above a box; a second arm stands behind.
 fn cell() -> Cell {
+    Cell::parse(folder::workspace().join("cell.toml"), &text()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn text() -> String {
     let urdf = folder::model("rx60b");
-    let text = format!(
+    format!(
         r#"
 version = 1
 units = {{ length = "m", angle = "rad" }}
@@ -39,8 +43,7 @@ size = [0.5, 0.6, 0.3]
 at = [0.1, -0.8, 0.16]
 "#,
         urdf = urdf.display()
-    );
-    Cell::parse(folder::workspace().join("cell.toml"), &text).unwrap_or_else(|e| panic!("{e}"))
+    )
 }
 
 fn random_pose(r: &mut Random, size: f64, up_m: f64) -> Pose {
@@ -137,6 +140,29 @@ fn a_base_may_stand_on_its_floor_and_not_in_a_bench() {
     let (present, inside) = (reach(Vec3::ZERO), reach(Vec3::new(0.1, -0.8, 0.0)));
     assert!(present.free > 0, "{present:?}");
     assert!(inside.solutions == present.solutions && inside.free == 0, "{inside:?}");
+    // The base may touch the floor, but not sink into it.
+    let sunk = reach(Vec3::new(0.0, 0.0, -0.1));
+    assert!(sunk.solutions > 0 && sunk.free == 0, "{sunk:?}");
+    assert!(reach(Vec3::new(0.0, 0.0, -0.0005)).free > 0);
+}
+
+#[test]
+fn what_touches_somewhere_else_does_not_count() {
+    let far = r#"
+[robot.far]
+dh = [{ a = 1, min = -3, max = 3, speed = 1 }]
+links = [{ capsule = { from = [-1, 0, 0], to = [0, 0, 0], radius = 0.1 } }]
+base = { at = [50, 0, 1] }
+[object.stone]
+shape = "sphere"
+at = [50.5, 0, 1]
+radius = 0.3
+"#;
+    let (alone, beside) = (cell(), Cell::parse(folder::workspace().join("cell.toml"), &(text() + far)).unwrap());
+    let target = [ReachTarget::Axis { point: Vec3::new(0.5, -0.1, 0.4), direction: -Vec3::Z }];
+    let reach = |cell: &Cell| ReachQuery::of_cell(cell, ARM).unwrap().evaluate(&Pose::IDENTITY, &target, None).unwrap();
+    assert_eq!(reach(&alone), reach(&beside));
+    assert!(reach(&alone)[0].free > 0);
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 
-use elbowroom::cell::{OutOfReachProofs, QueryModel};
 use elbowroom::Diagnostic;
+use elbowroom::cell::{OutOfReachProofs, QueryModel};
 use elbowroom::query::{self, Level, MotionRow, Query, QueryKind, QueryPairs, QueryRow, QueryStates};
 use elbowroom::robot::GeometryId;
 use elbowroom::scene::{CheckerOptions, Scene, SceneState};

@@ -24,7 +24,7 @@ const MOST_TURNS: usize = 360;
 ///
 /// Every joint state within the limits that brings the tool to the target is tested against all solids: every branch with six axes
 /// and a spherical wrist, otherwise those that 16 searches find. Links that no joint moves are tested too; what they touch in the
-/// file, such as the floor, they may touch everywhere.
+/// file, such as the floor, they may touch everywhere, no deeper than there. Contacts of other things with each other do not count.
 ///
 /// Parameters
 /// ----------
@@ -165,7 +165,13 @@ fn read(value: &Bound<'_, PyAny>) -> Result<Vec<ReachTarget>, Fault> {
     let is_axis = value.cast::<PyUntypedArray>().is_ok_and(|array| array.shape().get(1) == Some(&6));
     let turn: &[&str] = if is_axis { &["direction x", "y", "z"] } else { &["quaternion x", "y", "z", "w"] };
     let columns: Vec<String> = point.iter().chain(turn).map(|&name| name.to_owned()).collect();
-    let rows = Rows::of(value, "targets", &columns)?;
+    let rows = Rows::of(value, "targets", &columns).map_err(|fault| match fault {
+        Fault::Array(text) => Fault::Array(text.replace(
+            "(N, 7), float64: a row per state with x, y, z, quaternion x, y, z, w",
+            "(N, 7), float64: x, y, z, quaternion x, y, z, w; or (N, 6): x, y, z, direction x, y, z",
+        )),
+        other => other,
+    })?;
     let mut targets = Vec::with_capacity(rows.len());
     while targets.len() < rows.len() {
         for row in rows.chunk(targets.len())?.chunks_exact(columns.len()) {
