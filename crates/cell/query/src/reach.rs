@@ -82,7 +82,7 @@ pub struct Reach {
 /// version = 1
 /// units = { length = "m", angle = "rad" }
 /// [robot.slide]
-/// dh = [{ joint = "prismatic", min = 0, max = 1, speed = 1 }]
+/// dh = [{ kind = "prismatic", min = 0, max = 1, speed = 1 }]
 /// links = [{ capsule = { from = [0, 0, -0.2], to = [0, 0, -0.1], radius = 0.05 } }]
 /// [object.lid]
 /// shape = "sphere"
