@@ -46,7 +46,8 @@ def _placement(found: Placement) -> Figure:
     xy, places = np.unique(found.bases[:, :2].round(9), axis=0, return_inverse=True)
     best = np.zeros(len(xy))
     np.maximum.at(best, places.ravel(), found.reached / found.targets)
-    drawn = plot.scatter(xy[:, 0], xy[:, 1], c=100 * best, s=_size(len(xy)), marker="s", cmap="viridis", vmin=0, vmax=100)
+    most = max(100 * best.max(), 1.0)
+    drawn = plot.scatter(xy[:, 0], xy[:, 1], c=100 * best, s=_size(len(xy)), marker="s", cmap="viridis", vmin=0, vmax=most)
     figure.colorbar(drawn, label="targets reached without contact, %, in the best turn")
     top = found.best(1)[0]
     x, y = found.bases[top, :2]
