@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from elbowroom.errors import ArrayError
 
-__all__ = ["PoseLike", "matrix"]
+__all__ = ["PoseLike", "matrix", "row"]
 
 #: A 4x4 array; `(xyz, quaternion)` in metres and as `x, y, z, w`; or `(xyz, rotation)` with an object that has `as_matrix`, such
 #: as `scipy.spatial.transform.Rotation`.
@@ -67,3 +67,27 @@ def matrix(pose: PoseLike) -> list[list[float]]:
         raise ArrayError(f"`pose` is no rotation with a translation\n  write: {_WANTED}")
     rows: list[list[float]] = found.tolist()
     return rows
+
+
+def row(pose: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return x, y, z in metres and the quaternion x, y, z, w of a 4x4 array.
+
+    Examples
+    --------
+    >>> row(np.eye(4)).tolist()
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+    """
+    turn = pose[:3, :3]
+    # The largest of the four is computed from the diagonal, the others by it (Shepperd, 1978).
+    squares = np.array([turn[0, 0], turn[1, 1], turn[2, 2], np.trace(turn)])
+    k = int(np.argmax(squares))
+    if k == 3:
+        quaternion = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1], 1.0 + squares[3]])
+    else:
+        i, j = (k + 1) % 3, (k + 2) % 3
+        quaternion = np.empty(4)
+        quaternion[k] = 1.0 + 2.0 * squares[k] - squares[3]
+        quaternion[i], quaternion[j] = turn[i, k] + turn[k, i], turn[j, k] + turn[k, j]
+        quaternion[3] = turn[j, i] - turn[i, j]
+    found: npt.NDArray[np.float64] = np.concatenate([pose[:3, 3], quaternion / np.linalg.norm(quaternion)])
+    return found

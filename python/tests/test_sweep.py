@@ -104,8 +104,8 @@ def test_a_tolerance_and_a_function_of_ones_own(tmp_path: Path) -> None:
         (lambda _, q: {"a": q}, "the column `a` has the shape"),
         (lambda _, q: {"a": q[:, 0].astype(complex)}, "has the type complex128"),
         (lambda _, q: {"a": [object()] * len(q)}, "has the type object"),
-        (lambda _, q: {3: q[:, 0]}, "3 is no name of a column"),
-        (lambda _, q: {"index": q[:, 0]}, "'index' is no name"),
+        (lambda _, q: {3: q[:, 0]}, "3 cannot name a column"),
+        (lambda _, q: {"index": q[:, 0]}, "'index' cannot name"),
     ]
     for k, (function, message) in enumerate(wrong):
         with pytest.raises(er.Error, match=message):

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elbowroom.errors import ArgumentError, ArrayError
-from elbowroom.poses import matrix
+from elbowroom.poses import matrix, row
 from elbowroom.sweep.tables import finite, read
 
 Pose = npt.NDArray[np.float64]
@@ -33,14 +33,14 @@ class Bases(ABC):
 
     def table(self, present: Pose) -> npt.NDArray[np.float64]:
         """Return `(P, 7)`: x, y, z in metres and the quaternion x, y, z, w of every place."""
-        return np.array([_row(self.pose(i, present)) for i in range(self.count())]).reshape(-1, 7)
+        return np.array([row(self.pose(i, present)) for i in range(self.count())]).reshape(-1, 7)
 
     def files(self) -> list[Path]:
         """Return the files that the places come from."""
         return []
 
     def check(self) -> None:
-        """Refuse places that are none."""
+        """Refuse rows that are not poses."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class BaseTable(Bases):
         return [self.file]
 
     def check(self) -> None:
-        """Refuse rows that are no poses."""
+        """Refuse rows that are not poses."""
         rows = finite(self.file, read(self.file, (7,)))
         zero = np.flatnonzero(np.linalg.norm(rows[:, 3:], axis=1) < 1e-9)
         if len(zero):
@@ -128,21 +128,3 @@ def _value(axis: Axis, place: int) -> float:
     first, last, count = axis
     # A single value is the middle.
     return first + (last - first) * (place / (count - 1) if count > 1 else 0.5)
-
-
-def _row(pose: Pose) -> npt.NDArray[np.float64]:
-    """Return x, y, z and the quaternion x, y, z, w of a pose."""
-    turn = pose[:3, :3]
-    # The largest of the four is computed from the diagonal, the others by it (Shepperd, 1978).
-    squares = np.array([turn[0, 0], turn[1, 1], turn[2, 2], np.trace(turn)])
-    k = int(np.argmax(squares))
-    if k == 3:
-        quaternion = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1], 1.0 + squares[3]])
-    else:
-        i, j = (k + 1) % 3, (k + 2) % 3
-        quaternion = np.empty(4)
-        quaternion[k] = 1.0 + 2.0 * squares[k] - squares[3]
-        quaternion[i], quaternion[j] = turn[i, k] + turn[k, i], turn[j, k] + turn[k, j]
-        quaternion[3] = turn[j, i] - turn[i, j]
-    row: npt.NDArray[np.float64] = np.concatenate([pose[:3, 3], quaternion / np.linalg.norm(quaternion)])
-    return row

@@ -19,7 +19,7 @@ def name_of(function: Any) -> str:
     Raises
     ------
     ArgumentError
-        If it is no function, or one of its values cannot be told from others.
+        If it is not a function, or one of its values cannot be told from others.
     """
     name = getattr(function, "__qualname__", type(function).__name__)
     content = hashlib.sha256(repr(list(_parts(function))).encode()).hexdigest()

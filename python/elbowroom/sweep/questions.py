@@ -101,7 +101,7 @@ class StateQuestion(Question):
 class ReachQuestion(Question):
     """Whether a robot reaches targets from places of its base: a row for every target and place, the targets of a place together."""
 
-    units = {"solutions": "joint states that bring the tool there", "free": "those in which nothing touches"}
+    units = {"solutions": "joint states that bring the tool there", "free": "those in which the robot touches nothing"}
 
     def __init__(self, query: _elbowroom.ReachQuery, bases: Bases, targets: npt.NDArray[np.float64]) -> None:
         """Ask about targets of a robot."""
@@ -149,7 +149,7 @@ def _checked(columns: dict[str, Column], count: int) -> dict[str, Column]:
 
 def _column(name: Any, values: Any, count: int) -> Column:
     if not isinstance(name, str) or name == "index":
-        raise ArgumentError(f"{name!r} is no name of a column; `index` is the number of the row\n  write: another name")
+        raise ArgumentError(f"{name!r} cannot name a column; `index` is the number of the row\n  write: another name")
     if isinstance(values, list) and all(value is None or isinstance(value, str) for value in values):
         names: list[str | None] = values
         shape: tuple[int, ...] = (len(names),)

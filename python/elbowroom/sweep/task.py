@@ -60,7 +60,7 @@ class Placements:
         Raises
         ------
         ArrayError
-            If a row is no target or no place.
+            If a row is not a target or not a place.
         """
         file = Path(self.targets)
         targets = np.ascontiguousarray(finite(file, read(file, (6, 7))))

@@ -15,6 +15,8 @@ use elbowroom_scene::{
 };
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
+use crate::rows::cores;
+
 /// Starts of the numeric method per target, for robots without a closed form.
 const STARTS: usize = 16;
 /// Number of targets that a thread takes at once.
@@ -171,7 +173,7 @@ impl ReachQuery {
     ) -> Result<Vec<Reach>, Diagnostic> {
         let refused = |what: String| Diagnostic::new(&self.file, None, what).hint("finite numbers, in metres");
         if let Some(at) = targets.iter().position(|target| !target.is_finite()) {
-            return Err(refused(format!("target {at} (from 0) is no place: {:?}", targets[at])));
+            return Err(refused(format!("target {at} (from 0) is not finite, or its direction has no length")));
         }
         let scene = self.scene.with_base(self.robot, *base_in_world).map_err(|e| refused(e.to_string()))?;
         let mut state = SceneState::new(&scene);
@@ -193,10 +195,8 @@ impl ReachQuery {
                 }
             }
         };
-        let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        let count = threads.unwrap_or_else(cores).get().min(blocks.len());
         std::thread::scope(|scope| {
-            for _ in 1..count {
+            for _ in 1..cores(blocks.len(), threads) {
                 scope.spawn(work);
             }
             work();

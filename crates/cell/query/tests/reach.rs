@@ -176,7 +176,7 @@ fn what_is_no_place_is_refused() {
     ];
     for target in bad {
         let message = query.evaluate(&Pose::IDENTITY, &[good, target], None).unwrap_err().to_string();
-        assert!(message.contains("target 1 (from 0) is no place"), "{message}");
+        assert!(message.contains("target 1 (from 0) is not finite, or its direction has no length"), "{message}");
     }
     let nowhere = Pose::from_translation(Vec3::Y * f64::NAN);
     assert!(query.evaluate(&nowhere, &[good], None).unwrap_err().to_string().contains("arm"));

@@ -16,10 +16,21 @@ pub struct Rows<'py> {
 }
 
 impl<'py> Rows<'py> {
-    /// Takes an array of `width` columns, whose names are given for messages.
+    /// Takes an array with a column per joint, whose names are given for messages.
     pub fn of(value: &Bound<'py, PyAny>, name: &'static str, columns: &[String]) -> Result<Self, Fault> {
         let width = columns.len();
-        let wanted = || format!("an array of shape (N, {width}), float64: a row per state with {}", columns.join(", "));
+        let wanted = || format!("(N, {width}), float64: a row per state with {}", columns.join(", "));
+        Self::of_width(value, name, width, &wanted)
+    }
+
+    /// Takes an array of `width` columns; `wanted` says what is in them.
+    pub fn of_width(
+        value: &Bound<'py, PyAny>,
+        name: &'static str,
+        width: usize,
+        wanted: &dyn Fn() -> String,
+    ) -> Result<Self, Fault> {
+        let wanted = || format!("an array of shape {}", wanted());
         let Ok(untyped) = value.cast::<PyUntypedArray>() else {
             let class = value.get_type().name().map(|n| n.to_string()).unwrap_or_default();
             return Err(Fault::Array(format!("`{name}` is a {class}, no NumPy array\n  write: {}", wanted())));

@@ -161,20 +161,13 @@ impl ReachQuery {
 
 /// The targets of an array with six or seven columns.
 fn read(value: &Bound<'_, PyAny>) -> Result<Vec<ReachTarget>, Fault> {
-    let point = ["x", "y", "z"];
     let is_axis = value.cast::<PyUntypedArray>().is_ok_and(|array| array.shape().get(1) == Some(&6));
-    let turn: &[&str] = if is_axis { &["direction x", "y", "z"] } else { &["quaternion x", "y", "z", "w"] };
-    let columns: Vec<String> = point.iter().chain(turn).map(|&name| name.to_owned()).collect();
-    let rows = Rows::of(value, "targets", &columns).map_err(|fault| match fault {
-        Fault::Array(text) => Fault::Array(text.replace(
-            "(N, 7), float64: a row per state with x, y, z, quaternion x, y, z, w",
-            "(N, 7), float64: x, y, z, quaternion x, y, z, w; or (N, 6): x, y, z, direction x, y, z",
-        )),
-        other => other,
-    })?;
+    let width = if is_axis { 6 } else { 7 };
+    let wanted = || "(N, 7), float64: x, y, z, quaternion x, y, z, w; or (N, 6): x, y, z, direction x, y, z".to_owned();
+    let rows = Rows::of_width(value, "targets", width, &wanted)?;
     let mut targets = Vec::with_capacity(rows.len());
     while targets.len() < rows.len() {
-        for row in rows.chunk(targets.len())?.chunks_exact(columns.len()) {
+        for row in rows.chunk(targets.len())?.chunks_exact(width) {
             targets.push(target(row).ok_or_else(|| {
                 let what = if is_axis { "a direction" } else { "a quaternion" };
                 Fault::Array(format!(

@@ -74,12 +74,12 @@ fn the_examples_of_the_documentation_print_what_they_say() {
     let script = package.path().join("doctests.py");
     std::fs::write(
         &script,
-        "import doctest, elbowroom\n\
+        "import doctest, elbowroom, numpy\n\
          from elbowroom import poses\n\
          parse, runner = doctest.DocTestParser().get_doctest, doctest.DocTestRunner()\n\
          classes = (elbowroom.Robot, elbowroom.Cell, elbowroom.Checker, elbowroom.ReachQuery)\n\
-         for shown in (elbowroom, *classes, elbowroom.plan, poses.matrix):\n    \
-             runner.run(parse(shown.__doc__, {'elbowroom': elbowroom, 'matrix': poses.matrix}, shown.__name__, None, 0))\n\
+         for shown in (elbowroom, *classes, elbowroom.plan, poses.matrix, poses.row):\n    \
+             runner.run(parse(shown.__doc__, {'elbowroom': elbowroom, 'np': numpy, **vars(poses)}, shown.__name__, None, 0))\n\
          assert runner.tries > 12 and runner.failures == 0, (runner.tries, runner.failures)\n",
     )
     .expect("a script");

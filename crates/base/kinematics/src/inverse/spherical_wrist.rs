@@ -56,6 +56,10 @@ impl Lengths {
             forearm: parameters.a2.hypot(parameters.c3),
         }
     }
+
+    fn sum(self) -> f64 {
+        self.shoulder + self.aside + self.upper_arm + self.forearm
+    }
 }
 
 /// Parameters that distinguish the branches.
@@ -94,9 +98,9 @@ impl SphericalWrist {
         let mut wrist = Self::from_axes(&axes, arm)?;
         let flange_in_root = wrist.base_in_root * wrist.flange_in_base(&[0.0; 6])?;
         wrist.tool_in_flange = flange_in_root.inverse() * tip_in_root;
-        let deviation = wrist.deviation(arm)?;
-        wrist.deviation = 4.0 * deviation + LEAST_DEVIATION;
-        (deviation < 10.0 * SLACK).then_some(wrist)
+        let (away_m, angle) = wrist.deviation(arm)?;
+        wrist.deviation = 4.0 * angle.max(away_m / wrist.lengths.sum()) + LEAST_DEVIATION;
+        (away_m < 10.0 * SLACK * arm.scale().max(1.0) && angle < 10.0 * SLACK).then_some(wrist)
     }
 
     fn from_axes(axes: &[AxisInRoot; 6], arm: &Arm) -> Option<Self> {
@@ -183,21 +187,20 @@ impl SphericalWrist {
         Some(Pose::new(rotation, Vec3::from(pose.translation.to_array())))
     }
 
-    /// Largest difference between arm and model in sampled positions; `None` if the model has none.
-    fn deviation(&self, arm: &Arm) -> Option<f64> {
+    /// Largest distance (m) and angle (rad) between arm and model in sampled positions; `None` if the model has none.
+    fn deviation(&self, arm: &Arm) -> Option<(f64, f64)> {
         let mut axes = [AxisInRoot { origin: Vec3::ZERO, axis: Vec3::ZERO }; 6];
-        let mut largest = 0.0_f64;
+        let (mut away_m, mut angle) = (0.0_f64, 0.0_f64);
+        // NaN is too large.
+        let larger = |known: f64, found: f64| known.max(if found.is_nan() { f64::INFINITY } else { found });
         for k in 0..16 {
             let q: [f64; 6] = std::array::from_fn(|i| 6.0 * (quasirandom(k, i, 6) - 0.5));
             let exact = arm.tip_in_root(&q, &mut axes);
             let model = self.base_in_root * self.flange_in_base(&q)? * self.tool_in_flange;
-            let away = exact.translation.distance(model.translation) / arm.scale().max(1.0);
-            // Written so that NaN is too large.
-            largest = [away, rotation_error(exact.rotation, model.rotation).length()]
-                .iter()
-                .fold(largest, |largest, &found| if found <= largest { largest } else { found });
+            away_m = larger(away_m, exact.translation.distance(model.translation));
+            angle = larger(angle, rotation_error(exact.rotation, model.rotation).length());
         }
-        Some(largest)
+        Some((away_m, angle))
     }
 
     /// Up to eight solutions of the model, with angles near the seed and without regard to limits. If two axes of the
@@ -236,7 +239,7 @@ impl SphericalWrist {
     pub fn is_regular(&self, target_in_root: &Pose) -> bool {
         let Lengths { shoulder, aside, upper_arm, forearm } = self.lengths;
         let center = self.flange_at(target_in_root).translation;
-        let length = shoulder + aside + upper_arm + forearm;
+        let length = self.lengths.sum();
         let beside_axis_1 = center.x.hypot(center.y);
         let ahead = (beside_axis_1 * beside_axis_1 - aside * aside).max(0.0).sqrt();
         // From the shoulder in front of axis 1, and from the one behind it. The sine of joint 3 grows like the root of the distance

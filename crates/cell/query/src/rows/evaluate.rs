@@ -171,7 +171,7 @@ pub(super) fn evaluate_blocks<R: Send>(
 }
 
 /// Number of threads for some blocks. Asking for the cores takes tens of microseconds, as long as some states.
-fn cores(blocks: usize, most: Option<NonZeroUsize>) -> usize {
+pub(crate) fn cores(blocks: usize, most: Option<NonZeroUsize>) -> usize {
     let all = || most.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
     if blocks < 2 { 1 } else { all().min(blocks) }
 }

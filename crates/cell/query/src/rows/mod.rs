@@ -13,6 +13,7 @@ mod query_checker;
 mod row;
 mod states;
 
+pub(crate) use evaluate::cores;
 pub use evaluate::{BLOCK, Query, QueryEffort, evaluate, evaluate_contacts, evaluate_query};
 pub use kind::{QueryKind, UnknownQueryKind};
 pub use limits::{JointOvershoot, LimitRecord, LimitRow, evaluate_limits};
