@@ -3,18 +3,19 @@
 use elbowroom_proximity::{Cuboid, Shape};
 use elbowroom_spatial::{Obb, Vec3};
 
-use crate::bounding_volume;
+use crate::bounding_volume::Enclosed;
 use crate::local_shape::LocalShape;
 
 /// A tight oriented box around the shapes: for one primitive, the box in its own frame. `None` if there are no points.
 pub(crate) fn cuboid(exact: &[LocalShape]) -> Option<LocalShape> {
-    if let [only] = exact
-        && let Some(half_extents) = half_extents(&only.shape)
-    {
-        return Some(LocalShape::new(Shape::Cuboid(Cuboid { half_extents }), only.in_geometry));
-    }
-    let (shape, in_geometry) = bounding_volume::cuboid(&points(exact))?;
-    Some(LocalShape::new(shape, in_geometry))
+    of_primitive(exact).or_else(|| Enclosed::new(points(exact)).cuboid())
+}
+
+/// The box around one primitive, in its own frame; `None` for other shapes.
+pub(crate) fn of_primitive(exact: &[LocalShape]) -> Option<LocalShape> {
+    let [only] = exact else { return None };
+    let half_extents = half_extents(&only.shape)?;
+    Some(LocalShape::new(Shape::Cuboid(Cuboid { half_extents }), only.in_geometry))
 }
 
 /// The box around a primitive in its own frame.

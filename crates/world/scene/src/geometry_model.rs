@@ -1,5 +1,6 @@
 //! The models of one link or object, from coarse to exact.
 
+use std::cell::LazyCell;
 use std::sync::OnceLock;
 
 use elbowroom_proximity::{Capsule, Shape};
@@ -7,8 +8,8 @@ use elbowroom_robot::GeometryId;
 use elbowroom_spatial::{Obb, Vec3};
 
 use crate::Level;
-use crate::bounding_volume;
-use crate::enclosing_cuboid::{cuboid, points};
+use crate::bounding_volume::Enclosed;
+use crate::enclosing_cuboid::{cuboid, of_primitive, points};
 use crate::local_shape::LocalShape;
 use crate::obb_tree::ObbTree;
 
@@ -41,8 +42,9 @@ impl GeometryModel {
     pub fn new(id: GeometryId, exact: Vec<LocalShape>, padding_m: f64) -> Self {
         let complex = exact.len() > 1 || exact.iter().any(|s| matches!(s.shape, Shape::Mesh(_) | Shape::Hull(_)));
         let unbounded = exact.iter().any(|s| matches!(s.shape, Shape::HalfSpace(_)));
-        let boxed = if unbounded { None } else { cuboid(&exact) };
-        let rounded = if unbounded { None } else { capsule(&exact) };
+        let enclosed = LazyCell::new(|| Enclosed::new(points(&exact)));
+        let boxed = if unbounded { None } else { of_primitive(&exact).or_else(|| enclosed.cuboid()) };
+        let rounded = if unbounded { None } else { capsule_of_primitive(&exact).or_else(|| enclosed.capsule()) };
         let hull_slack_m = exact
             .iter()
             .filter(|s| matches!(s.shape, Shape::Mesh(_)))
@@ -106,20 +108,15 @@ fn obb(local: &LocalShape) -> Option<Obb> {
     }
 }
 
-fn capsule(exact: &[LocalShape]) -> Option<LocalShape> {
-    if let [only] = exact {
-        let round = |half_length, radius| Shape::Capsule(Capsule { half_length, radius });
-        let shape = match &only.shape {
-            Shape::Sphere(s) => Some(round(0.0, s.radius)),
-            Shape::Capsule(c) => Some(Shape::Capsule(*c)),
-            _ => None,
-        };
-        if let Some(shape) = shape {
-            return Some(LocalShape::new(shape, only.in_geometry));
-        }
-    }
-    let (shape, in_geometry) = bounding_volume::capsule(&points(exact))?;
-    Some(LocalShape::new(shape, in_geometry))
+/// The capsule that a sphere or a capsule is; `None` for other shapes.
+fn capsule_of_primitive(exact: &[LocalShape]) -> Option<LocalShape> {
+    let [only] = exact else { return None };
+    let capsule = match &only.shape {
+        Shape::Sphere(s) => Capsule { half_length: 0.0, radius: s.radius },
+        Shape::Capsule(c) => *c,
+        _ => return None,
+    };
+    Some(LocalShape::new(Shape::Capsule(capsule), only.in_geometry))
 }
 
 /// The convex shape around one shape: the shape itself, the hull of a mesh, or the box of a mesh too flat to have a hull.

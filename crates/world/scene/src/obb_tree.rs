@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Obb, Vec3};
 
-use crate::bounding_volume;
+use crate::bounding_volume::Enclosed;
 use crate::enclosing_cuboid::{cuboid, points};
 use crate::level::MAX_DEPTH;
 use crate::local_shape::LocalShape;
@@ -169,6 +169,5 @@ fn enclosing(items: &[TreeItem], shapes: &[LocalShape]) -> Option<LocalShape> {
             corners.push(local.in_geometry.transform_point(m.vertices()[vertex as usize]));
         }
     }
-    let (shape, in_geometry) = bounding_volume::cuboid(&corners)?;
-    Some(LocalShape::new(shape, in_geometry))
+    Enclosed::new(corners).cuboid()
 }

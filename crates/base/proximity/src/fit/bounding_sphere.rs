@@ -30,10 +30,19 @@ pub(super) fn smallest(points: &[Vec3]) -> (Vec3, f64) {
 /// Squares are compared first: roots are computed only for points that can share the largest distance after rounding.
 fn farthest(points: &[Vec3], center: Vec3) -> (f64, Vec3) {
     let squared = |p: &Vec3| (*p - center).length_squared();
-    let largest = points.iter().fold(0.0, |m: f64, p| m.max(squared(p)));
+    let largest = largest(points, squared);
     let (reach, least) = (largest.sqrt(), largest * (1.0 - 4.0 * f64::EPSILON));
     let has_reach = |p: &&Vec3| squared(p) >= least && p.distance(center) >= reach;
     (reach, points.iter().rev().find(has_reach).copied().unwrap_or(center))
+}
+
+/// The largest value that is not negative; 0 if there is none. Four independent maxima, which processors compute at the
+/// same time.
+fn largest(points: &[Vec3], value: impl Fn(&Vec3) -> f64) -> f64 {
+    let larger = |a: f64, b: f64| if b > a { b } else { a };
+    let (quarters, rest) = points.as_chunks::<4>();
+    let lanes = quarters.iter().fold([0.0; 4], |m, p| std::array::from_fn(|i| larger(m[i], value(&p[i]))));
+    rest.iter().map(&value).chain(lanes).fold(0.0, larger)
 }
 
 /// The smallest sphere around at most five points, found by testing all subsets of at most four, and that subset.

@@ -6,8 +6,8 @@ use super::margin::{MARGIN, scale};
 use super::{bounding_sphere, principal_axes};
 use crate::Capsule;
 
-pub(super) fn fit(points: &[Vec3]) -> Option<(Capsule, Pose)> {
-    let principal = principal_axes::principal(points);
+/// Fits a capsule; the search starts at the principal axes.
+pub(super) fn fit(points: &[Vec3], principal: Rotation) -> Option<(Capsule, Pose)> {
     let starts = [
         principal,
         principal * Rotation::from_axis_angle(Vec3::X, std::f64::consts::FRAC_PI_2),

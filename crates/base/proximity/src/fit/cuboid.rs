@@ -10,7 +10,8 @@ use crate::{ConvexHull, Cuboid};
 /// Number of hull faces tried, largest first.
 const FACES: usize = 100;
 
-pub(super) fn fit(points: &[Vec3], hull: Option<&ConvexHull>) -> Option<(Cuboid, Pose)> {
+/// Fits a box; one of the searches starts at the principal axes.
+pub(super) fn fit(points: &[Vec3], principal: Rotation, hull: Option<&ConvexHull>) -> Option<(Cuboid, Pose)> {
     let volume = |r: Rotation| {
         let extent = bounds(points, r).extent();
         extent.x * extent.y * extent.z
@@ -21,7 +22,7 @@ pub(super) fn fit(points: &[Vec3], hull: Option<&ConvexHull>) -> Option<(Cuboid,
         let e = bounds(points, r).extent();
         if flat { e.x * e.y + e.y * e.z + e.z * e.x + 1e-3 * e.length_squared() } else { volume(r) }
     };
-    let mut starts = vec![Rotation::IDENTITY, principal_axes::principal(points)];
+    let mut starts = vec![Rotation::IDENTITY, principal];
     starts.extend(hull.map(flush).unwrap_or_default());
     // Each cost is a pass over all points, so it is computed once per start, not once per comparison.
     let mut starts: Vec<(f64, Rotation)> = starts.into_iter().map(|s| (cost(s), s)).collect();

@@ -31,6 +31,9 @@ impl PatchQuery {
     /// to the anchor.
     pub fn closest_points(&self, of_a: &Polygon, of_b: &Polygon) -> Option<PatchPoints> {
         let top = of_a.clipped(-self.direction, self.tolerance - self.ends[0]);
+        if top.is_empty() {
+            return None;
+        }
         let bottom = of_b.clipped(self.direction, self.ends[1] + self.tolerance);
         let patch = top.overlap(&bottom, self.direction, self.tolerance);
         let on_a = patch.nearest(self.anchor)?;

@@ -32,12 +32,28 @@ impl Polygon {
         &self.points[..self.len]
     }
 
-    /// The part with `normal · p <= limit` (Sutherland and Hodgman, 1974).
-    pub fn clipped(&self, normal: Vec3, limit: f64) -> Self {
-        let mut kept = Self { points: [Vec3::ZERO; MAX_CORNERS], len: 0 };
+    /// Whether nothing is left of it.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The part with `normal · p <= limit`.
+    pub fn clipped(mut self, normal: Vec3, limit: f64) -> Self {
+        self.clip(normal, limit);
+        self
+    }
+
+    /// Keeps the part with `normal · p <= limit` (Sutherland and Hodgman, 1974). Most cuts leave the polygon as it is, and
+    /// copy nothing.
+    fn clip(&mut self, normal: Vec3, limit: f64) {
+        let height = |p: Vec3| normal.dot(p) - limit;
+        if self.points().iter().all(|&p| height(p) <= 0.0) {
+            return;
+        }
+        let mut kept = Self::new([]);
         for (k, &p) in self.points().iter().enumerate() {
             let q = self.points[if k + 1 == self.len { 0 } else { k + 1 }];
-            let (hp, hq) = (normal.dot(p) - limit, normal.dot(q) - limit);
+            let (hp, hq) = (height(p), height(q));
             if hp <= 0.0 {
                 kept.push(p);
             }
@@ -45,30 +61,36 @@ impl Polygon {
                 kept.push(p + (q - p) * (hp / (hp - hq)));
             }
         }
-        kept
+        self.len = kept.len;
+        self.points[..kept.len].copy_from_slice(kept.points());
     }
 
     /// The overlap with the other polygon, both projected along the unit vector `along`, enlarged by `tolerance`.
-    pub fn overlap(&self, other: &Self, along: Vec3, tolerance: f64) -> Self {
+    pub fn overlap(mut self, other: &Self, along: Vec3, tolerance: f64) -> Self {
         let side = if along.x.abs() < 0.6 { Vec3::X } else { Vec3::Y };
         let u = along.cross(side);
-        let mut kept = self.within_extent(other, u, tolerance).within_extent(other, along.cross(u), tolerance);
+        self.clip_to_extent(other, u, tolerance);
+        self.clip_to_extent(other, along.cross(u), tolerance);
         for (k, &p) in other.points().iter().enumerate() {
             let q = other.points[if k + 1 == other.len { 0 } else { k + 1 }];
-            kept = kept.within_extent(other, along.cross(q - p), tolerance);
+            self.clip_to_extent(other, along.cross(q - p), tolerance);
         }
-        kept
+        self
     }
 
-    /// The part within the extent of the other polygon along a direction, enlarged by `tolerance`.
-    fn within_extent(&self, other: &Self, direction: Vec3, tolerance: f64) -> Self {
-        let Some(n) = direction.try_normalize() else { return *self };
+    /// Keeps the part within the extent of the other polygon along a direction, enlarged by `tolerance`.
+    fn clip_to_extent(&mut self, other: &Self, direction: Vec3, tolerance: f64) {
+        if self.is_empty() {
+            return;
+        }
+        let Some(n) = direction.try_normalize() else { return };
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in other.points() {
             let h = n.dot(*p);
             (low, high) = (low.min(h), high.max(h));
         }
-        self.clipped(n, high + tolerance).clipped(-n, tolerance - low)
+        self.clip(n, high + tolerance);
+        self.clip(-n, tolerance - low);
     }
 
     /// Approximately the largest extent: the largest distance of a corner from the first.
