@@ -1,5 +1,6 @@
 //! Compiled programs, as cargo's messages report them.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
@@ -27,8 +28,23 @@ pub struct Artifact {
 /// # Errors
 /// If something does not compile; cargo has printed why.
 pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<Artifact>, String> {
+    artifacts(&messages(root, args, "json-render-diagnostics", env)?)
+}
+
+/// Compiles the same, prints the warnings, and counts them. Cargo keeps them, so nothing is compiled twice.
+///
+/// # Errors
+/// If something does not compile; cargo has printed why.
+pub fn warnings(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<usize, String> {
+    let found = warnings_of(&messages(root, args, "json", env)?)?;
+    print!("{}", found.iter().map(String::as_str).collect::<String>());
+    Ok(found.len())
+}
+
+/// Returns cargo's messages, one JSON object per line.
+fn messages(root: &Path, args: &[&str], format: &str, env: &[(&str, &str)]) -> Result<String, String> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
-    let args: Vec<&str> = args.iter().copied().chain(["--message-format", "json-render-diagnostics"]).collect();
+    let args: Vec<&str> = args.iter().copied().chain(["--message-format", format]).collect();
     let line = args.join(" ");
     eprintln!("$ cargo {line}");
     let mut command = command(&cargo);
@@ -37,7 +53,7 @@ pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<A
     if !output.status.success() {
         return Err(format!("`cargo {line}` does not compile"));
     }
-    artifacts(&String::from_utf8_lossy(&output.stdout))
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 /// Compiles a bench as `cargo bench` does, and returns its executable.
@@ -50,11 +66,11 @@ pub fn bench(root: &Path, package: &str, name: &str) -> Result<PathBuf, String> 
     bench.map(|artifact| artifact.executable).ok_or_else(|| format!("cargo has not built the bench {name}"))
 }
 
-/// Reads the programs from cargo's messages, one JSON object per line.
+/// Reads the programs from cargo's messages.
 fn artifacts(messages: &str) -> Result<Vec<Artifact>, String> {
     let mut found = Vec::new();
-    for line in messages.lines().filter(|line| line.starts_with('{')) {
-        let message: Value = serde_json::from_str(line).map_err(|e| format!("cargo's message `{line}`: {e}"))?;
+    for message in objects(messages) {
+        let message = message?;
         let Some(executable) = message["executable"].as_str().or_else(|| shared_library(&message)) else { continue };
         let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
         found.push(Artifact {
@@ -66,6 +82,26 @@ fn artifacts(messages: &str) -> Result<Vec<Artifact>, String> {
         });
     }
     Ok(found)
+}
+
+/// Reads the warnings and errors from cargo's messages. A crate that is compiled twice, for tests and for others, tells
+/// some of them twice.
+fn warnings_of(messages: &str) -> Result<BTreeSet<String>, String> {
+    let mut found = BTreeSet::new();
+    for message in objects(messages) {
+        let message = message?;
+        let text = message["message"]["rendered"].as_str().unwrap_or_default();
+        // The summary of a crate, "3 warnings emitted", has no code.
+        if message["reason"] == "compiler-message" && !message["message"]["code"].is_null() {
+            found.insert(text.to_owned());
+        }
+    }
+    Ok(found)
+}
+
+fn objects(messages: &str) -> impl Iterator<Item = Result<Value, String>> {
+    let lines = messages.lines().filter(|line| line.starts_with('{'));
+    lines.map(|line| serde_json::from_str(line).map_err(|e| format!("cargo's message `{line}`: {e}")))
 }
 
 /// The shared library of a message.
@@ -109,5 +145,15 @@ mod tests {
         };
         assert_eq!(artifacts(messages).unwrap(), [library, expected]);
         assert!(artifacts("{not json").is_err());
+    }
+
+    #[test]
+    fn warnings_are_counted_once() {
+        let of = |message: &str| format!(r#"{{"reason":"compiler-message","message":{message}}}"#);
+        let unused = of(r#"{"code":{"code":"unused_variables"},"level":"warning","rendered":"warning: unused\n"}"#);
+        let summary = of(r#"{"code":null,"level":"warning","rendered":"warning: 1 warning emitted\n"}"#);
+        let messages = [unused.as_str(), &summary, &unused, r#"{"reason":"build-finished","success":true}"#].join("\n");
+        assert_eq!(warnings_of(&messages).unwrap().into_iter().collect::<Vec<_>>(), ["warning: unused\n"]);
+        assert!(warnings_of("{not json").is_err());
     }
 }

@@ -8,7 +8,7 @@ use xtask::shell;
 use crate::dependents::{self, Package, dependents};
 use crate::references::References;
 use crate::test_run::{Choice, Program};
-use crate::workspace::WORKSPACE;
+use crate::workspace::{self, Compiler, WORKSPACE};
 use crate::{documents, layers, suite, test_run};
 
 /// Longest last time, s, of test units that run in crates which only depend on a change.
@@ -30,7 +30,7 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
     }
     println!("affected: {}", packages.keys().map(String::as_str).collect::<Vec<_>>().join(", "));
     // The whole workspace: unchanged crates cost nothing, and in a part of it libraries would have other features.
-    shell::cargo(root, &[&["clippy"], &WORKSPACE[..], &["--all-targets", "--", "-D", "warnings"]].concat(), &[])?;
+    workspace::lint(root, &[])?;
     suite::announce_data(root);
     let references = References::find(root, true)?;
     let distance = |program: &Program| {
@@ -43,7 +43,9 @@ pub fn run(root: &Path, since: &str) -> Result<(), String> {
         Some(_) => LONGEST_BEYOND_S,
     };
     let choice = Choice { longest: &longest, again: false };
-    test_run::run(root, &WORKSPACE, &references.environment().collect::<Vec<_>>(), &choice, || ())
+    let compiler = Compiler::find(root);
+    let env: Vec<_> = compiler.environment().into_iter().chain(references.environment()).collect();
+    test_run::run(root, &WORKSPACE, &env, &choice, || ())
 }
 
 /// Lists files that differ from a commit, and new ones.

@@ -9,7 +9,7 @@ use xtask::{Failure, shell};
 
 use crate::references::References;
 use crate::test_run::{Choice, locked};
-use crate::workspace::{WORKSPACE, program};
+use crate::workspace::{self, Compiler, WORKSPACE, program};
 use crate::{documents, layers, snippets, test_run};
 
 type Check = fn(&Context) -> Result<(), String>;
@@ -26,6 +26,7 @@ struct Context<'a> {
     root: &'a Path,
     offline: bool,
     again: bool,
+    compiler: Compiler,
     /// References of the tests, while they are being installed.
     references: Mutex<Option<JoinHandle<Result<References, String>>>>,
     /// Steps that run beside the tests, and their results.
@@ -39,8 +40,8 @@ struct Step {
     check: Check,
 }
 
-/// The steps, cheap ones first, so that quick failures come first. The workspace is compiled twice: built by `tests`,
-/// checked by `clippy` (and `docs`). Steps after `tests` run beside them, so that no processor is idle while crates are
+/// The steps, cheap ones first, so that quick failures come first. All tests are compiled once, by `tests`, and linted by
+/// the same compiler; `clippy` and `docs` check the libraries once more, as no documentation can be built otherwise. Steps after `tests` run beside them, so that no processor is idle while crates are
 /// compiled one after another.
 static STEPS: [Step; 10] = [
     Step { name: "fmt", what: "cargo fmt --check", check: fmt },
@@ -129,7 +130,8 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
         beside = chosen.split_off(tests + 1);
     }
     let (references, ended) = (Mutex::new(references), Mutex::default());
-    let context = Context { root, offline: options.offline, again: options.again, references, beside, ended };
+    let (offline, again, compiler) = (options.offline, options.again, Compiler::find(root));
+    let context = Context { root, offline, again, compiler, references, beside, ended };
     let started = Instant::now();
     let mut outcomes: Vec<Outcome> = chosen.into_iter().map(|step| timed(step, &context)).collect();
     // If the tests do not compile, nothing has run beside them.
@@ -172,11 +174,7 @@ fn fmt(context: &Context) -> Result<(), String> {
 }
 
 fn clippy(context: &Context) -> Result<(), String> {
-    let args = [&["clippy"], &WORKSPACE[..], &["--all-targets", "--", "-D", "warnings"]].concat();
-    shell::cargo(context.root, &args, &beside_tests(context))?;
-    // Without the feature only the façade and the command differ.
-    let without = ["clippy", "-p", "elbowroom-cli", "--bins", "--", "-D", "warnings"];
-    shell::cargo(context.root, &without, &beside_tests(context))
+    workspace::lint(context.root, &beside_tests(context))
 }
 
 fn tests(context: &Context) -> Result<(), String> {
@@ -185,7 +183,7 @@ fn tests(context: &Context) -> Result<(), String> {
     announce_data(context.root);
     // A failed installation fails the step, but only after the tests have run.
     let environment = references.iter().flat_map(References::environment);
-    let env: Vec<_> = network(context).into_iter().chain(environment).collect();
+    let env: Vec<_> = network(context).into_iter().chain(context.compiler.environment()).chain(environment).collect();
     let choice = Choice { longest: &|_| f64::INFINITY, again: context.again };
     test_run::run(context.root, &WORKSPACE, &env, &choice, || run_beside(context))?;
     references.map(|_| ())
@@ -193,7 +191,7 @@ fn tests(context: &Context) -> Result<(), String> {
 
 fn doctests(context: &Context) -> Result<(), String> {
     let args = [&["test", "--quiet", "--doc"], &WORKSPACE[..], &["--", "--test-threads=1"]].concat();
-    shell::cargo(context.root, &args, &beside_tests(context))
+    shell::cargo(context.root, &args, &[beside_tests(context), context.compiler.environment()].concat())
 }
 
 /// Reports whether the real data exist: without them tests on real robots pass, so the log must show it.
@@ -219,18 +217,11 @@ fn generated(context: &Context) -> Result<(), String> {
 /// Documents libraries and `elbowroom-devtools`. An example is named because cargo then gives all crates
 /// the features that they have for `clippy`; with its compiler and arguments nothing is checked twice.
 fn docs(context: &Context) -> Result<(), String> {
-    let sysroot = shell::output(context.root, "rustc", &["--print", "sysroot"])?;
-    let driver = Path::new(sysroot.trim()).join("bin/clippy-driver");
-    let mut env = beside_tests(context);
+    let mut env = [beside_tests(context), context.compiler.strict_environment()].concat();
     // Each crate merges itself into the search index, 3 s each. For pages with a search: remove `target/doc`, run
     // `cargo doc`.
     let _ = std::fs::remove_dir_all(shell::target_folder(context.root).join("doc/search.index"));
     env.push(("RUSTDOCFLAGS", "-D warnings"));
-    let driver = driver.to_string_lossy();
-    if Path::new(&*driver).is_file() {
-        env.push(("RUSTC_WORKSPACE_WRAPPER", &driver));
-        env.push(("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__"));
-    }
     let targets = ["--lib", "--bin", "elbowroom-devtools", "--example", "1_distance"];
     shell::cargo(context.root, &[&["doc", "--no-deps"], &WORKSPACE[..], &targets].concat(), &env)
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use xtask::crates;
 
 use crate::artifacts::{self, Artifact};
+use crate::workspace::TESTS;
 
 /// A compiled test program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,7 +27,7 @@ pub struct Program {
 /// # Errors
 /// If something does not compile; cargo has printed why.
 pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<Program>, String> {
-    programs(&artifacts::compile(root, &[&["test", "--no-run"], args].concat(), env)?)
+    programs(&artifacts::compile(root, &[&TESTS[..], args].concat(), env)?)
 }
 
 /// Selects the test programs.
