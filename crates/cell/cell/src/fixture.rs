@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use elbowroom_proximity::TriMesh;
 use elbowroom_robot::{ObjectId, RobotId};
-use elbowroom_shared_control::{Guide, Shield, ShieldSettings, ShieldTarget};
+use elbowroom_shared_control::{Guide, ProtectedSurface, Shield, ShieldSettings, ShieldTarget};
 
 /// A fixture that protects: `[fixture.NAME]` without `guide`.
 #[derive(Debug, Clone)]
@@ -23,6 +23,8 @@ pub struct CellFixture {
     pub active: bool,
     /// The shield, once it was made.
     pub(crate) made: OnceLock<Shield>,
+    /// The shield in the world, once a tool was to glide along it.
+    pub(crate) placed: OnceLock<ProtectedSurface>,
 }
 
 /// A tool of a robot.

@@ -8,7 +8,9 @@ use elbowroom_proximity::contact::triangle_surface;
 use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_robot::{Collider, GeometryId, ObjectId};
 use elbowroom_scene::{Object, PairEdit, PairRule, PairRules, Selection};
-use elbowroom_shared_control::{Passage, Shield, ShieldError, ShieldSettings, generate_shield, line_on_surface};
+use elbowroom_shared_control::{
+    NavigatorError, Passage, ProtectedSurface, Shield, ShieldError, ShieldSettings, generate_shield, line_on_surface,
+};
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::area_border::{AROUND, crossing_edges, crossing_text};
@@ -80,6 +82,21 @@ impl CellFixture {
         }
         let shield = self.make_shield(cell)?;
         Ok(self.made.get_or_init(|| shield))
+    }
+
+    /// The shield in the world, for a tool that glides along it. Made once: a cell is checked before it runs.
+    ///
+    /// # Errors
+    /// As for [`CellFixture::shield`], and a shield that bounds no solid.
+    pub(crate) fn protected_surface(&self, cell: &Cell) -> Result<&ProtectedSurface, Diagnostic> {
+        if let Some(placed) = self.placed.get() {
+            return Ok(placed);
+        }
+        let in_world = cell.objects[self.protects.0].in_world;
+        let refused =
+            |e: NavigatorError| Diagnostic::new(&cell.file, self.line, format!("the shield is not usable: {e}"));
+        let placed = ProtectedSurface::new(self.shield(cell)?.mesh.clone(), in_world).map_err(refused)?;
+        Ok(self.placed.get_or_init(|| placed))
     }
 
     fn make_shield(&self, cell: &Cell) -> Result<Shield, Diagnostic> {

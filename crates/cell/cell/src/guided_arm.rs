@@ -177,11 +177,7 @@ impl CellOperator {
             }
         }
         for (index, fixture) in fixtures() {
-            let in_world = cell.objects[fixture.protects.0].in_world;
-            let shield = ProtectedSurface::new(fixture.shield(cell)?.mesh.clone(), in_world);
-            let refused =
-                |e: NavigatorError| Diagnostic::new(&cell.file, fixture.line, format!("the shield is not usable: {e}"));
-            add(shield.map_err(refused)?, SurfaceOwner::Shield(index));
+            add(fixture.protected_surface(cell)?.clone(), SurfaceOwner::Shield(index));
         }
         Ok((surfaces, owners))
     }

@@ -199,7 +199,7 @@ fn a_fixture_opens_the_work_for_its_tool() {
     let cell = above_a_block();
     let hand = |t_s: f64| [1016.5, 0.0, 1330.0 - 60.0 * t_s.min(2.0)];
     let lowest = |cell: &str| {
-        write(dir.path(), &format!("tick_ms = 8\n{cell}"), hand, 3.0);
+        write(dir.path(), &format!("tick_ms = 16\n{cell}"), hand, 3.0);
         let text = std::fs::read_to_string(dir.path().join("hand.csv")).unwrap().replace(TURN, "1,0,0,0");
         std::fs::write(dir.path().join("hand.csv"), text).unwrap();
         elbowroom(dir.path(), &["run", "cell.toml", "--json", "--out", "out"]).expect(0);
@@ -223,7 +223,7 @@ fn a_fixture_opens_the_work_for_its_tool() {
 fn a_stream_switches_a_fixture_unless_the_tool_is_in_its_opening() {
     let dir = tempfile::tempdir().unwrap();
     let hand = |t_s: f64| [1016.5, 0.0, (1330.0 - 60.0 * t_s.min(2.0)).max(1330.0 - 60.0 * (6.0 - t_s))];
-    write(dir.path(), &format!("tick_ms = 8\n{}{HOLE}", above_a_block()), hand, 6.0);
+    write(dir.path(), &format!("tick_ms = 16\n{}{HOLE}", above_a_block()), hand, 6.0);
     let text = std::fs::read_to_string(dir.path().join("hand.csv")).unwrap().replace(TURN, "1,0,0,0");
     let switched = |line: &str| {
         let Ok(t_s) = line.split(',').next().unwrap().parse::<f64>() else { return format!("{line},fixture.hole\n") };
@@ -240,7 +240,7 @@ fn a_stream_switches_a_fixture_unless_the_tool_is_in_its_opening() {
         .collect();
     assert_eq!(of_hole.iter().map(|(_, event)| *event).collect::<Vec<_>>(), ["off", "on", "refuse", "off"], "{events}");
     assert!(of_hole[0].0 == 0.0 && of_hole[1].0 == 2.0 && of_hole[2].0 == 3.6, "{of_hole:?}");
-    let tick_s = 0.008;
+    let tick_s = 0.016;
     let rows = rows(dir.path());
     let row = |t_s: f64| &rows[(t_s / tick_s) as usize];
     assert!(rows[..(2.0 / tick_s) as usize].iter().all(|row| row.z_m > 1.24), "closed at first");

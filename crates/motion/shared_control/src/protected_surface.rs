@@ -11,10 +11,10 @@ use crate::NavigatorError;
 /// Distance below which the line between two nearest points has no usable direction, metres.
 const TOUCHING_M: f64 = 1e-9;
 
-/// The closed surface of a solid, placed in the world.
+/// The closed surface of a solid, placed in the world. Copies share the cones of its normals.
 #[derive(Debug, Clone)]
 pub struct ProtectedSurface {
-    pub(crate) surface: NormalConeHierarchy,
+    pub(crate) surface: Arc<NormalConeHierarchy>,
     pub(crate) in_world: Pose,
     /// Whether the tool keeps off it now.
     pub(crate) is_on: bool,
@@ -30,7 +30,7 @@ impl ProtectedSurface {
         if !mesh.is_oriented() {
             return Err(NavigatorError::Unoriented);
         }
-        let surface = NormalConeHierarchy::new(mesh);
+        let surface = Arc::new(NormalConeHierarchy::new(mesh));
         if !in_world.is_finite() {
             return Err(NavigatorError::PoseNotFinite("a protected surface"));
         }

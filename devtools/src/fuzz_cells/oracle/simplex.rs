@@ -2,41 +2,52 @@
 
 use elbowroom_spatial::Vec3;
 
-/// Returns the nearest point, and the corners of the face that it lies in.
+/// Returns the nearest point, and the corners of the face that it lies in, of up to four corners.
 pub fn nearest(corners: &[Vec3]) -> (Vec3, Vec<Vec3>) {
-    let mut best: Option<(Vec3, Vec<Vec3>)> = None;
+    let of_mask = |mask: u32| corners.iter().enumerate().filter(move |(i, _)| mask & (1 << i) != 0).map(|(_, c)| *c);
+    let mut best = (corners[0], 1);
     for mask in 1_u32..1 << corners.len() {
-        let face: Vec<Vec3> = (0..corners.len()).filter(|i| mask & (1 << i) != 0).map(|i| corners[i]).collect();
-        let Some(point) = nearest_of_face(&face) else { continue };
-        if best.as_ref().is_none_or(|(b, _)| point.length_squared() < b.length_squared()) {
-            best = Some((point, face));
+        // Without a list per face: this is the innermost loop of the oracle.
+        let (mut face, mut count) = ([Vec3::ZERO; 4], 0);
+        for corner in of_mask(mask) {
+            face[count] = corner;
+            count += 1;
+        }
+        let Some(point) = nearest_of_face(&face[..count]) else { continue };
+        if mask == 1 || point.length_squared() < best.0.length_squared() {
+            best = (point, mask);
         }
     }
-    best.unwrap_or((corners[0], vec![corners[0]]))
+    (best.0, of_mask(best.1).collect())
 }
 
 /// Projects the origin onto the plane of a face; `None` if the projection is not in the face.
 fn nearest_of_face(face: &[Vec3]) -> Option<Vec3> {
     let first = face[0];
-    let edges: Vec<Vec3> = face[1..].iter().map(|p| *p - first).collect();
-    let weights = match edges.as_slice() {
-        [] => return Some(first),
-        [a] => vec![-first.dot(*a) / a.dot(*a)],
-        [a, b] => {
-            let (aa, ab, bb) = (a.dot(*a), a.dot(*b), b.dot(*b));
-            let (pa, pb) = (-first.dot(*a), -first.dot(*b));
+    let edge = |i: usize| face[i] - first;
+    let inside = |w: &f64| w.is_finite() && *w >= 0.0;
+    match face.len() {
+        1 => Some(first),
+        2 => {
+            let a = edge(1);
+            let w = -first.dot(a) / a.dot(a);
+            (inside(&w) && w <= 1.0).then(|| first + a * w)
+        }
+        3 => {
+            let (a, b) = (edge(1), edge(2));
+            let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
+            let (pa, pb) = (-first.dot(a), -first.dot(b));
             let det = aa * bb - ab * ab;
-            vec![(pa * bb - pb * ab) / det, (pb * aa - pa * ab) / det]
+            let [v, w] = [(pa * bb - pb * ab) / det, (pb * aa - pa * ab) / det];
+            (inside(&v) && inside(&w) && v + w <= 1.0).then(|| first + a * v + b * w)
         }
-        [a, b, c] => {
-            let det = a.dot(b.cross(*c));
-            let p = -first;
-            vec![p.dot(b.cross(*c)) / det, a.dot(p.cross(*c)) / det, a.dot(b.cross(p)) / det]
+        _ => {
+            let (a, b, c, p) = (edge(1), edge(2), edge(3), -first);
+            let det = a.dot(b.cross(c));
+            let [u, v, w] = [p.dot(b.cross(c)) / det, a.dot(p.cross(c)) / det, a.dot(b.cross(p)) / det];
+            ([u, v, w].iter().all(inside) && u + v + w <= 1.0).then(|| first + a * u + b * v + c * w)
         }
-        _ => return None,
-    };
-    let inside = weights.iter().all(|w| w.is_finite() && *w >= 0.0) && weights.iter().sum::<f64>() <= 1.0;
-    inside.then(|| edges.iter().zip(&weights).fold(first, |p, (e, w)| p + *e * *w))
+    }
 }
 
 #[cfg(test)]

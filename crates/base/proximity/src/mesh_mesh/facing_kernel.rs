@@ -179,8 +179,8 @@ mod tests {
         let axis = vector(random).try_normalize().unwrap_or(Vec3::Z);
         let cone = match random.index(4) {
             0 => NormalCone::every_direction(axis),
-            1 => NormalCone::around([(axis, 0.0)].into_iter(), axis),
-            _ => NormalCone::around([(axis, 1.5 * random.unit())].into_iter(), axis),
+            1 => NormalCone::around(&[(axis, 0.0)].into_iter(), axis),
+            _ => NormalCone::around(&[(axis, 1.5 * random.unit())].into_iter(), axis),
         };
         let radius = 0.3 * random.unit() as f32;
         let center = (vector(random) * 0.6).to_array().map(|v| v as f32);

@@ -123,7 +123,7 @@ fn cones_of_triangles(mesh: &TriMesh, vertex_faces: &VertexFaces, outward: &[boo
         if !neighbours.all(is_clear) {
             return NormalCone::every_direction(normal);
         }
-        NormalCone::around(directions.of_triangle(t).map(|d| (d, ANGLE_MARGIN)), normal)
+        NormalCone::around_equal(&directions.of_triangle(t), ANGLE_MARGIN, normal)
     };
     (0..mesh.triangles().len()).map(cone).collect()
 }

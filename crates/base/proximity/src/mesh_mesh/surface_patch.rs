@@ -29,11 +29,28 @@ impl NormalCone {
 
     /// A cone that contains cones given by their axes and half-angles; if it would not be convex, every direction with the
     /// other axis.
-    pub fn around(cones: impl Iterator<Item = (Vec3, f64)> + Clone, other_axis: Vec3) -> Self {
-        let sum = cones.clone().fold(Vec3::ZERO, |sum, (axis, _)| sum + axis);
-        let Some(axis) = sum.try_normalize() else { return Self::every_direction(other_axis) };
-        let half_angle =
-            cones.fold(0.0, |widest: f64, (n, half)| widest.max(axis.dot(n).clamp(-1.0, 1.0).acos() + half));
+    pub fn around(cones: &(impl Iterator<Item = (Vec3, f64)> + Clone), other_axis: Vec3) -> Self {
+        let widest = |axis: Vec3| {
+            cones.clone().fold(0.0, |widest: f64, (n, half)| widest.max(axis.dot(n).clamp(-1.0, 1.0).acos() + half))
+        };
+        Self::of_axes(cones.clone().map(|(axis, _)| axis), widest, other_axis)
+    }
+
+    /// Like [`NormalCone::around`], for cones of the same half-angle: the axis that is farthest off decides.
+    pub fn around_equal(axes: &(impl Iterator<Item = Vec3> + Clone), half_angle: f64, other_axis: Vec3) -> Self {
+        let widest = |axis: Vec3| {
+            let farthest = axes.clone().fold(1.0, |least: f64, n| least.min(axis.dot(n)));
+            farthest.max(-1.0).acos() + half_angle
+        };
+        Self::of_axes(axes.clone(), widest, other_axis)
+    }
+
+    /// A cone around the mean of axes, with the half-angle that `widest` returns for it.
+    fn of_axes(axes: impl Iterator<Item = Vec3>, widest: impl Fn(Vec3) -> f64, other_axis: Vec3) -> Self {
+        let Some(axis) = axes.fold(Vec3::ZERO, |sum, axis| sum + axis).try_normalize() else {
+            return Self::every_direction(other_axis);
+        };
+        let half_angle = widest(axis);
         if !(half_angle < std::f64::consts::FRAC_PI_2) {
             return Self::every_direction(other_axis);
         }
@@ -85,7 +102,7 @@ impl SurfacePatch {
         let radius = patches.iter().map(reach).fold(0.0, f32::max) * 1.000_01;
         let cones = patches.iter().map(|p| p.cone.axis_and_half_angle());
         let middle = cones.clone().fold(Vec3::ZERO, |sum, (axis, _)| sum + axis).try_normalize().unwrap_or(Vec3::Z);
-        let cone = NormalCone::around(cones, middle);
+        let cone = NormalCone::around(&cones, middle);
         let thickness = |p: &Self| {
             let offset: [f32; 3] = std::array::from_fn(|k| p.center[k] - center[k]);
             // A disc of the ball's radius and of the patch's own thickness. From the cosine, the sine of a small angle would

@@ -1,6 +1,6 @@
 //! `[fixture.NAME]`: a shield that protects an object and is opened along a target.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
@@ -60,7 +60,8 @@ fn fixture(name: &str, t: &Table<'_>, cell: &Cell) -> Result<CellFixture> {
         shield,
         tool: t.get("tool").map(|v| tool(&v, cell)).transpose()?,
         active: t.flag_or("active", true)?,
-        made: std::sync::OnceLock::new(),
+        made: OnceLock::new(),
+        placed: OnceLock::new(),
     })
 }
 
