@@ -8,9 +8,10 @@ Joint values are `(N, dof)` arrays of float64, radians for joints that turn and 
 state. Lengths are metres, times seconds. For a cell the robots stand side by side in the order of the file.
 """
 
-from elbowroom._elbowroom import Cell, Checker, ReachQuery, Robot, __version__, plan
+from elbowroom._elbowroom import Cell, Checker, Monitor, ReachQuery, Robot, __version__, plan
 from elbowroom.errors import ArgumentError, ArrayError, Error, FileError
-from elbowroom.results import Edges, JointMap, Path, Reach, Run, Trace, Witness
+from elbowroom.pages import save, show
+from elbowroom.results import Edges, JointMap, Overrides, Path, Reach, Run, Tick, Trace, Witness
 
 __all__ = [
     "ArgumentError",
@@ -21,13 +22,18 @@ __all__ = [
     "Error",
     "FileError",
     "JointMap",
+    "Monitor",
+    "Overrides",
     "Path",
     "Reach",
     "ReachQuery",
     "Robot",
     "Run",
+    "Tick",
     "Trace",
     "Witness",
     "__version__",
     "plan",
+    "save",
+    "show",
 ]

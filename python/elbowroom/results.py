@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from dataclasses import dataclass, field
 from pathlib import Path as _File
 from typing import TYPE_CHECKING, Any
@@ -11,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from elbowroom.errors import ArgumentError
+from elbowroom.pages import frame
 
 if TYPE_CHECKING:
-    from elbowroom._elbowroom import RunRecord
+    from elbowroom._elbowroom import PathRecord, RunRecord
 
-__all__ = ["Edges", "JointMap", "Path", "Reach", "Run", "Trace", "Witness"]
+__all__ = ["Edges", "JointMap", "Overrides", "Path", "Reach", "Run", "Tick", "Trace", "Witness"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class Edges:
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """A planned path, and its motion over time.
+    """A planned path, and its motion over time. In a notebook the robot moves along it in the scene of its cell.
 
     Attributes
     ----------
@@ -95,9 +95,17 @@ class Path:
     q: npt.NDArray[np.float64]
     cost_rad: float | None
     planning_us: int
+    _record: PathRecord = field(repr=False)
 
     def __bool__(self) -> bool:
         return self.found
+
+    def page(self) -> str:
+        """Return the robot on its path as an HTML page that needs no network."""
+        return self._record.page()
+
+    def _repr_html_(self) -> str:
+        return frame(self.page())
 
     @property
     def duration_s(self) -> float:
@@ -122,6 +130,77 @@ class Reach:
     solutions: npt.NDArray[np.uint16]
     free: npt.NDArray[np.uint16]
     q: npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Tick:
+    """What the monitor of a robot answers in a tick.
+
+    Attributes
+    ----------
+    robot
+        The robot.
+    speed_override
+        The override to apply, 0 to 1.
+    reason
+        Why it has this value, with the names of regions and joints.
+    is_fault
+        Whether a fault stops the robot, such as a state that is not finite.
+    region, distance_m
+        The region that limits the override, and how far the robot is from it; `None` without one.
+    events
+        What happened: the region or `None`, and `warn_in`, `inside_in`, `granted`, … as in `events.csv`.
+    """
+
+    robot: str
+    speed_override: float
+    reason: str
+    is_fault: bool
+    region: str | None
+    distance_m: float | None
+    events: list[tuple[str | None, str]]
+
+    @classmethod
+    def _by_robot(cls, ticks: list[tuple[Any, ...]]) -> dict[str, Tick]:
+        return {values[0]: cls(*values) for values in ticks}
+
+
+@dataclass(frozen=True, eq=False)
+class Overrides:
+    """What the monitors answer along a motion.
+
+    Attributes
+    ----------
+    robots
+        The robots, a column each.
+    times_s
+        `(N,)`: the times of the rows.
+    speed_override
+        `(N, robots)`: the overrides, 0 to 1.
+    reason
+        Per row a list with the reason of each robot.
+    events
+        Time, robot, region or `None`, and what happened.
+    """
+
+    robots: list[str]
+    times_s: npt.NDArray[np.float64]
+    speed_override: npt.NDArray[np.float64]
+    reason: list[list[str]]
+    events: list[tuple[float, str, str | None, str]]
+
+    @classmethod
+    def _of(
+        cls,
+        robots: list[str],
+        times_s: npt.NDArray[np.float64],
+        speed_override: npt.NDArray[np.float64],
+        reasons: list[str],
+        events: list[tuple[float, str, str | None, str]],
+    ) -> Overrides:
+        width = len(robots)
+        rows = [reasons[at : at + width] for at in range(0, len(reasons), width)]
+        return cls(robots, times_s, speed_override, rows, events)
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,9 +251,13 @@ class Run:
     notes: list[str]
     _record: RunRecord = field(repr=False)
 
+    def page(self) -> str:
+        """Return the report, an HTML page with the scene in 3-D that needs no network."""
+        return self._record.page()
+
     def report(self, file: str | _File | None = None) -> str:
-        """Return the report, an HTML page with the scene in 3-D that needs no network, and write it to a file."""
-        page = self._record.page()
+        """Return the report, and write it to a file."""
+        page = self.page()
         if file is not None:
             _File(file).write_text(page, encoding="utf-8")
         return page
@@ -187,8 +270,7 @@ class Run:
         return self._record.trace(robots[0] if robot is None else robot)
 
     def _repr_html_(self) -> str:
-        page = html.escape(self.report(), quote=True)
-        return f'<iframe srcdoc="{page}" style="width: 100%; height: 720px; border: 0"></iframe>'
+        return frame(self.page())
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,6 +33,7 @@
 mod area_border;
 mod cell;
 mod cell_ik_error;
+mod cell_monitors;
 pub mod configure;
 mod controller_zones;
 mod drawn_fixture;
@@ -81,6 +82,7 @@ pub use cell::{
     MapSpec, Monitoring, RegionSolid, Units,
 };
 pub use cell_ik_error::CellIkError;
+pub use cell_monitors::{CellInstant, CellMonitors, RobotTick};
 pub use controller_zones::{ExportedRegion, ZoneExport, ZoneFrame, ZoneLanguage, export_zones};
 pub use drawn_fixture::{DrawnFixture, DrawnTarget, MOST_DRAWN_POINTS};
 pub use elbowroom_access as access;

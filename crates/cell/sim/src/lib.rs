@@ -38,6 +38,7 @@ mod hand;
 mod held_object;
 pub mod motion;
 mod operator_summary;
+mod playback;
 mod recording;
 pub mod replanning;
 pub mod run;
@@ -48,6 +49,7 @@ mod virtual_robot_summary;
 pub use held_object::held_object;
 pub use motion::{PathSearch, PlannedPaths};
 pub use operator_summary::OperatorSummary;
+pub use playback::playback;
 pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, Deadlock, Evasion, EventRow, ForceSample, GoverningPoint,
     GuidanceSample, GuidanceState, GuidanceTrack, HandOverRecord, Hold, HoldReason, ObjectTrack, Outcome, PartKind,

@@ -2,6 +2,7 @@
 
 mod between_ticks;
 mod carried_volumes;
+mod cell_monitors;
 mod cells;
 mod common;
 mod errors;

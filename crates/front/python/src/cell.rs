@@ -11,6 +11,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::error::Fault;
+use crate::page;
 use crate::run::run;
 
 /// A cell file and what it describes: robots, objects, regions, programs.
@@ -116,6 +117,15 @@ impl Cell {
         let found =
             py.detach(|| map::map_with(&self.model, &request, &|_: MapProgress<'_>| ()).map_err(Fault::from))?;
         joint_map(py, found)
+    }
+
+    /// The cell at its start as an HTML page that needs no network: the scene in 3-D.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(py.detach(|| page::of_motion(&self.model, "at the start", None))?)
+    }
+
+    fn _repr_html_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("elbowroom.pages")?.getattr("frame")?.call1((self.page(py)?,))
     }
 
     fn __repr__(&self) -> String {

@@ -1,16 +1,18 @@
-//! The extension module of the Python package `elbowroom`: robots, cells, checkers and plans with NumPy arrays.
+//! The extension module of the Python package `elbowroom`: robots, cells, checkers, monitors and plans with NumPy arrays.
 //!
 //! `python/elbowroom` has the package around it: exceptions, type stubs, documentation. Nothing is computed here: arrays
 //! become rows of joint values, the façade answers, and the answers become arrays. While the façade works, other threads of
 //! Python run; every 65,536 rows, and every block of a query, signals are looked at, so Ctrl-C ends a long call.
 //!
 //! **Invariant.** A row that is not finite, or has the wrong number of values, is an exception that names the row; no such
-//! row is ever answered.
+//! row is ever answered. The one exception is a tick of a monitor, which answers a state that is not finite with override 0.
 
 mod arrays;
 mod cell;
 mod checker;
 mod error;
+mod monitor;
+mod page;
 mod paths;
 mod reach;
 mod robot;
@@ -26,7 +28,9 @@ fn _elbowroom(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<robot::Robot>()?;
     module.add_class::<cell::Cell>()?;
     module.add_class::<checker::Checker>()?;
+    module.add_class::<monitor::Monitor>()?;
     module.add_class::<reach::ReachQuery>()?;
     module.add_class::<run::RunRecord>()?;
+    module.add_class::<paths::PathRecord>()?;
     module.add_function(wrap_pyfunction!(paths::plan, module)?)
 }

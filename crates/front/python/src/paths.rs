@@ -1,15 +1,20 @@
 //! Paths without collision.
 
+use std::sync::Arc;
 use std::time::Duration;
 
+use elbowroom::cell::Cell as Model;
+use elbowroom::kinematics::JointTrajectory;
 use elbowroom::planner::RrtConnectSettings;
 use elbowroom::query::plan::{self as paths, PathAnswer, PathPlanner, PathRequest};
+use elbowroom::robot::RobotId;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::vector;
 use crate::cell::Cell;
 use crate::error::Fault;
+use crate::page;
 use crate::rows::shaped;
 
 /// Find a path without collision between two states, and time it.
@@ -71,7 +76,7 @@ pub fn plan<'py>(
     period_s: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (py, cell) = (cell.py(), &cell.get().model);
-    let (_, named) = paths::select_robot(cell, robot.as_deref()).map_err(Fault::from)?;
+    let (id, named) = paths::select_robot(cell, robot.as_deref()).map_err(Fault::from)?;
     let joints = named.joint_names();
     let (from, to) = (vector(q0, "q0", &joints)?, vector(q1, "q1", &joints)?);
     let limit = Duration::try_from_secs_f64(time_limit_s).ok().filter(|limit| !limit.is_zero());
@@ -98,11 +103,27 @@ pub fn plan<'py>(
         ..PathRequest::default()
     };
     let answer = py.detach(|| paths::plan(cell, &request).map_err(Fault::from))?;
-    path(py, &answer)
+    let motion = answer.timed.as_ref().map(|timed| (id, timed.trajectory.clone()));
+    path(py, &answer, PathRecord { model: cell.clone(), motion })
+}
+
+/// A path in its cell; `elbowroom.results.Path` has it.
+#[pyclass(module = "elbowroom", frozen)]
+pub struct PathRecord {
+    model: Arc<Model>,
+    motion: Option<(RobotId, JointTrajectory)>,
+}
+
+#[pymethods]
+impl PathRecord {
+    /// The robot on its path as an HTML page that needs no network; the cell at its start if there is no path.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(py.detach(|| page::of_motion(&self.model, "plan", self.motion.clone()))?)
+    }
 }
 
 /// A path as an object of the package.
-fn path<'py>(py: Python<'py>, answer: &PathAnswer) -> PyResult<Bound<'py, PyAny>> {
+fn path<'py>(py: Python<'py>, answer: &PathAnswer, record: PathRecord) -> PyResult<Bound<'py, PyAny>> {
     let dof = answer.joints.len();
     let array = |rows: Vec<&[f64]>| {
         let (count, values) = (rows.len(), rows.concat());
@@ -124,5 +145,6 @@ fn path<'py>(py: Python<'py>, answer: &PathAnswer) -> PyResult<Bound<'py, PyAny>
         q,
         length,
         answer.planning_us + answer.simplify_us,
+        record,
     ))
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use elbowroom::formats::robot::{self as files, LoadOptions};
 use elbowroom::formats::suggest;
+use elbowroom::inspect::InspectOptions;
 use elbowroom::kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom::kinematics::{Chain, ChainState, LinkId};
 use elbowroom::robot::Robot as Model;
@@ -15,6 +16,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::Rows;
 use crate::error::Fault;
+use crate::page;
 use crate::rows::{map_rows, shaped};
 
 /// A robot: links, joints and solids of a file.
@@ -255,6 +257,22 @@ impl Robot {
         let flat: Vec<f64> = solutions.iter().flatten().copied().collect();
         let shape = [solutions.len(), self.chain().dof()];
         shaped(&PyArray1::from_vec(py, flat), shape)
+    }
+
+    /// The robot as an HTML page that needs no network: four views with its joints.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let options = InspectOptions {
+            srdf: self.srdf.clone(),
+            unit: self.unit.as_deref().and_then(LengthUnit::parse),
+            joints: self.joints_file.clone(),
+            brief: true,
+            ..InspectOptions::default()
+        };
+        Ok(py.detach(|| page::of_robot(&self.path, &options))?)
+    }
+
+    fn _repr_html_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("elbowroom.pages")?.getattr("frame")?.call1((self.page(py)?,))
     }
 
     fn __repr__(&self) -> String {

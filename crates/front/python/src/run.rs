@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use elbowroom::cell::Cell as Model;
-use elbowroom::report::{ReportScene, write_html};
 use elbowroom::sim::{Recording, RunOptions, RunSummary, Sample, simulate};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::error::Fault;
+use crate::page;
 use crate::rows::shaped;
 
 /// What a run recorded, tick by tick; `elbowroom.results.Run` has it.
@@ -40,13 +40,8 @@ impl RunRecord {
 
     /// The report as an HTML page that needs no network.
     fn page(&self, py: Python<'_>) -> PyResult<String> {
-        let write = || {
-            let label = if self.recording.monitored { "monitor on" } else { "monitor off" };
-            let mut page = Vec::new();
-            write_html(&mut page, &ReportScene::of_cell(&self.model), &[(label, &self.recording)])?;
-            String::from_utf8(page).map_err(std::io::Error::other)
-        };
-        py.detach(write).map_err(|e| Fault::Argument(format!("the report: {e}")).into())
+        let label = if self.recording.monitored { "monitor on" } else { "monitor off" };
+        Ok(py.detach(|| page::of_recording(&self.model, label, &self.recording))?)
     }
 
     /// Every tick of a robot, as an `elbowroom.results.Trace`.

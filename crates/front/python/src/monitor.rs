@@ -1,0 +1,337 @@
+//! The monitors of a cell: overrides of the speed, tick by tick.
+
+use std::sync::Arc;
+
+use elbowroom::cell::{Cell as Model, CellInstant, CellMonitors, CellRegionId, RobotTick};
+use elbowroom::monitor::{AccessClass, Monitor as RobotMonitor, OverrideReason};
+use elbowroom::robot::RobotId;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::arrays::{CHUNK, Rows, vector};
+use crate::cell::Cell;
+use crate::error::Fault;
+use crate::rows::shaped;
+
+/// Region, and what happened.
+type EventNames = Vec<(Option<String>, &'static str)>;
+
+/// The monitors of all robots of a cell: how fast each robot may move.
+///
+/// A host ticks it once per period of its controller, with the state of every robot; robots that share regions grant them to
+/// each other. Belts, moving objects and pose files of the cell are where they are at the time of the tick. A state that is
+/// NaN, late, or jumps is no exception: the answer is override 0 and the reason. Objects that programs grip, and tools that they
+/// exchange, stay as at the start.
+///
+/// Parameters
+/// ----------
+/// cell
+///     The cell.
+///
+/// Raises
+/// ------
+/// FileError
+///     With the line of what a monitor refuses.
+///
+/// Examples
+/// --------
+/// >>> import elbowroom as er
+/// >>> monitor = er.Monitor(er.Cell.load("examples/figure12/cell.toml"))
+/// >>> tick = monitor.tick(0.0, [0, 0, 0, 0, 0, 0])["ns16"]
+/// >>> tick.speed_override, tick.reason
+/// (1.0, 'free')
+/// >>> monitor.tick(0.002, [float("nan")] * 6)["ns16"].speed_override
+/// 0.0
+#[pyclass(module = "elbowroom")]
+pub struct Monitor {
+    monitors: CellMonitors,
+    joints: Vec<String>,
+}
+
+/// Arrays of an instant, or of many.
+struct Motion<'a> {
+    times_s: &'a [f64],
+    q: &'a [f64],
+    qd: &'a [f64],
+    intent: &'a [f64],
+    programmed_override: f64,
+}
+
+impl<'a> Motion<'a> {
+    /// The instant of a row.
+    fn at(&self, row: usize) -> CellInstant<'a> {
+        let width = self.q.len() / self.times_s.len();
+        let of_row = |values: &'a [f64]| values.get(row * width..(row + 1) * width).unwrap_or(&[]);
+        CellInstant {
+            now_s: self.times_s[row],
+            q: of_row(self.q),
+            qd: of_row(self.qd),
+            intent: of_row(self.intent),
+            programmed_override: self.programmed_override,
+        }
+    }
+}
+
+impl Monitor {
+    fn cell(&self) -> &Arc<Model> {
+        self.monitors.cell()
+    }
+
+    fn region_id(&self, name: &str) -> Result<CellRegionId, Fault> {
+        let regions = &self.cell().regions;
+        let found = regions.iter().position(|r| r.region.name == name);
+        found.map(CellRegionId).ok_or_else(|| {
+            let names: Vec<&str> = regions.iter().map(|r| r.region.name.as_str()).collect();
+            let help = if names.is_empty() { "a [region.NAME] in the cell file".into() } else { names.join(", ") };
+            Fault::Argument(format!("no region is called \"{name}\"\n  write: {help}"))
+        })
+    }
+
+    fn robot_id(&self, name: &str) -> Result<RobotId, Fault> {
+        let robots = &self.cell().robots;
+        let found = robots.iter().position(|r| r.name == name);
+        found.map(RobotId).ok_or_else(|| {
+            let names: Vec<&str> = robots.iter().map(|r| r.name.as_str()).collect();
+            Fault::Argument(format!("no robot is called \"{name}\"\n  write: one of {}", names.join(", ")))
+        })
+    }
+
+    /// Values of an optional row.
+    fn optional(&self, value: Option<&Bound<'_, PyAny>>, name: &str) -> Result<Vec<f64>, Fault> {
+        value.map_or(Ok(Vec::new()), |value| row(value, name, &self.joints))
+    }
+}
+
+/// What the monitors answered so far, row by row and robot by robot.
+#[derive(Default)]
+struct Answers {
+    overrides: Vec<f64>,
+    reasons: Vec<String>,
+    events: Vec<(f64, String, Option<String>, &'static str)>,
+}
+
+impl Answers {
+    /// Ticks through the rows of a motion.
+    fn add(&mut self, monitors: &mut CellMonitors, motion: &Motion<'_>) {
+        for (at, &now_s) in motion.times_s.iter().enumerate() {
+            let ticks = monitors.tick(&motion.at(at));
+            for ((tick, monitor), robot) in ticks.iter().zip(monitors.monitors()).zip(&monitors.cell().robots) {
+                self.overrides.push(tick.report.speed_override);
+                self.reasons.push(reason(tick, monitor));
+                let named = events(tick, monitor).into_iter();
+                self.events.extend(named.map(|(region, event)| (now_s, robot.name.clone(), region, event)));
+            }
+        }
+    }
+}
+
+fn same_count(times: usize, rows: &Rows<'_>, name: &str) -> Result<(), Fault> {
+    if rows.len() == times {
+        return Ok(());
+    }
+    let count = rows.len();
+    Err(Fault::Array(format!("`times_s` has {times} values, `{name}` {count} rows\n  write: a time for each row")))
+}
+
+/// One row with a value per joint, finite or not: a monitor answers what is not.
+fn row(value: &Bound<'_, PyAny>, name: &str, joints: &[String]) -> Result<Vec<f64>, Fault> {
+    match value.extract::<Vec<f64>>() {
+        Ok(values) if values.len() == joints.len() => Ok(values),
+        // The message.
+        _ => vector(value, name, joints),
+    }
+}
+
+#[pymethods]
+impl Monitor {
+    #[new]
+    fn new(py: Python<'_>, cell: &Bound<'_, Cell>) -> PyResult<Self> {
+        let model = cell.get().model.clone();
+        let monitors = py.detach(|| CellMonitors::new(model).map_err(Fault::from))?;
+        let of_robot = |robot: &elbowroom::cell::CellRobot| {
+            robot.joint_names().into_iter().map(|joint| format!("{}.{joint}", robot.name)).collect::<Vec<_>>()
+        };
+        let joints = monitors.cell().robots.iter().flat_map(of_robot).collect();
+        Ok(Self { monitors, joints })
+    }
+
+    /// The names of the robots, in the order of the cell.
+    #[getter]
+    fn robots(&self) -> Vec<&str> {
+        self.cell().robots.iter().map(|robot| robot.name.as_str()).collect()
+    }
+
+    /// The names of the columns of states, `robot.joint`, side by side.
+    #[getter]
+    fn joints(&self) -> Vec<String> {
+        self.joints.clone()
+    }
+
+    /// The names of the regions.
+    #[getter]
+    fn regions(&self) -> Vec<&str> {
+        self.cell().regions.iter().map(|r| r.region.name.as_str()).collect()
+    }
+
+    /// Tick the monitor of every robot.
+    ///
+    /// Parameters
+    /// ----------
+    /// now_s
+    ///     Present time, in seconds; it grows from tick to tick.
+    /// q
+    ///     `(dof,)` joint values in the order of `joints`, rad or m.
+    /// qd
+    ///     `(dof,)` joint velocities; `None`: not known. The law of stopping distances then derives them from successive
+    ///     positions, and the first override is 0.
+    /// intent
+    ///     `(dof,)` joint velocities of the programs at override 1: lets a robot leave that was stopped in front of a region,
+    ///     if the cell has `direction_aware`.
+    /// programmed_override
+    ///     The override of programs and operators, 0 to 1.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to Tick
+    ///     By the name of the robot.
+    ///
+    /// Raises
+    /// ------
+    /// ArrayError
+    ///     If the number of values is not that of the joints.
+    #[pyo3(signature = (now_s, q, qd=None, *, intent=None, programmed_override=1.0))]
+    fn tick<'py>(
+        &mut self,
+        now_s: f64,
+        q: &Bound<'py, PyAny>,
+        qd: Option<&Bound<'py, PyAny>>,
+        intent: Option<&Bound<'py, PyAny>>,
+        programmed_override: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = q.py();
+        let q = row(q, "q", &self.joints)?;
+        let (qd, intent) = (self.optional(qd, "qd")?, self.optional(intent, "intent")?);
+        let motion = Motion { times_s: &[now_s], q: &q, qd: &qd, intent: &intent, programmed_override };
+        let ticks = self.monitors.tick(&motion.at(0));
+        let told = ticks.iter().zip(self.monitors.monitors()).zip(&self.cell().robots);
+        let told: Vec<_> = told
+            .map(|((tick, monitor), robot)| {
+                let (speed_override, is_fault) = (tick.report.speed_override, is_fault(tick));
+                let (region, distance_m) = governing(tick, monitor).unzip();
+                (
+                    &robot.name,
+                    speed_override,
+                    reason(tick, monitor),
+                    is_fault,
+                    region,
+                    distance_m,
+                    events(tick, monitor),
+                )
+            })
+            .collect();
+        py.import("elbowroom.results")?.getattr("Tick")?.getattr("_by_robot")?.call1((told,))
+    }
+
+    /// Tick through a motion, such as a recording.
+    ///
+    /// Parameters
+    /// ----------
+    /// times_s
+    ///     `(N,)`: the times of the rows, growing.
+    /// q, qd, intent
+    ///     `(N, dof)`: as in `tick`. Rows must be finite: they are arrays, and no measurements that fail.
+    /// programmed_override
+    ///     The override of programs and operators, 0 to 1.
+    ///
+    /// Returns
+    /// -------
+    /// Overrides
+    #[pyo3(signature = (times_s, q, qd=None, *, intent=None, programmed_override=1.0))]
+    fn evaluate<'py>(
+        &mut self,
+        times_s: Vec<f64>,
+        q: &Bound<'py, PyAny>,
+        qd: Option<&Bound<'py, PyAny>>,
+        intent: Option<&Bound<'py, PyAny>>,
+        programmed_override: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let py = q.py();
+        let rows = Rows::of(q, "q", &self.joints)?;
+        let other = |value: Option<&Bound<'py, PyAny>>, name| {
+            let found = value.map(|value| Rows::of(value, name, &self.joints)).transpose()?;
+            found.as_ref().map_or(Ok(()), |found| same_count(times_s.len(), found, name)).map(|()| found)
+        };
+        let (qd, intent) = (other(qd, "qd")?, other(intent, "intent")?);
+        same_count(times_s.len(), &rows, "q")?;
+        let mut answers = Answers::default();
+        for begin in (0..rows.len()).step_by(CHUNK) {
+            let times_s = &times_s[begin..rows.len().min(begin + CHUNK)];
+            let chunk = |rows: Option<&Rows>| rows.map_or(Ok(Vec::new()), |rows| rows.chunk(begin));
+            let (q, qd, intent) = (rows.chunk(begin)?, chunk(qd.as_ref())?, chunk(intent.as_ref())?);
+            let motion = Motion { times_s, q: &q, qd: &qd, intent: &intent, programmed_override };
+            py.detach(|| answers.add(&mut self.monitors, &motion));
+            py.check_signals()?;
+        }
+        let robots: Vec<String> = self.robots().into_iter().map(str::to_owned).collect();
+        let overrides = shaped(&PyArray1::from_vec(py, answers.overrides), [rows.len(), robots.len()])?;
+        let make = py.import("elbowroom.results")?.getattr("Overrides")?.getattr("_of")?;
+        make.call1((robots, PyArray1::from_vec(py, times_s), overrides, answers.reasons, answers.events))
+    }
+
+    /// Switch a temporary region on or off, from the next tick on.
+    ///
+    /// Raises
+    /// ------
+    /// ArgumentError
+    ///     If there is no such region, or it is permanent.
+    fn switch(&mut self, region: &str, on: bool) -> PyResult<()> {
+        let id = self.region_id(region)?;
+        let switched = self.monitors.switch(id, on, AccessClass::Integrator);
+        switched.map_err(|e| Fault::Argument(e.to_string()).into())
+    }
+
+    /// Whether a region is switched on.
+    fn is_active(&self, region: &str) -> PyResult<bool> {
+        self.region_id(region)?;
+        let is_active = |monitor: &RobotMonitor| monitor.region(region).is_some_and(|id| monitor.is_active(id));
+        Ok(self.monitors.monitors().iter().any(is_active))
+    }
+
+    /// Distance of a robot from a region at the last tick, in metres.
+    ///
+    /// Returns
+    /// -------
+    /// float
+    ///     0 inside; infinite beyond `limit_m`, and for a region that is off or not the robot's.
+    #[pyo3(signature = (robot, region, limit_m=10.0))]
+    fn distance(&self, robot: &str, region: &str, limit_m: f64) -> PyResult<f64> {
+        let (robot, _) = (self.robot_id(robot)?, self.region_id(region)?);
+        let monitor = &self.monitors.monitors()[robot.0];
+        let found = monitor.region(region).and_then(|id| monitor.distance(id, limit_m));
+        Ok(found.unwrap_or(f64::INFINITY))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Monitor({:?}: {} robots, {} regions)", self.cell().name, self.robots().len(), self.regions().len())
+    }
+}
+
+fn is_fault(tick: &RobotTick) -> bool {
+    matches!(tick.report.reason, OverrideReason::Fault(_))
+}
+
+fn reason(tick: &RobotTick, monitor: &RobotMonitor) -> String {
+    tick.report.reason.named(monitor.configuration()).to_string()
+}
+
+/// The region that limits the override, and its distance, m.
+fn governing(tick: &RobotTick, monitor: &RobotMonitor) -> Option<(String, f64)> {
+    let governing = tick.report.governing?;
+    Some((monitor.configuration().regions()[governing.region.0].name.clone(), governing.distance_m))
+}
+
+fn events(tick: &RobotTick, monitor: &RobotMonitor) -> EventNames {
+    let region =
+        |event: &elbowroom::monitor::Event| event.region.map(|id| monitor.configuration().regions()[id.0].name.clone());
+    tick.events.iter().map(|event| (region(event), event.kind.name())).collect()
+}

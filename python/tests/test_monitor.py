@@ -1,0 +1,127 @@
+"""Monitors: the overrides of a run, faults, switches."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import elbowroom as er
+from conftest import ROOT
+
+CELL = """
+version = 1
+units = { length = "mm", angle = "deg" }
+[robot.rail]
+dh = [{ kind = "prismatic", min = 0, max = 2000, speed = 1000 }]
+links = [{ sphere = { radius = 50 } }]
+[region.end]
+shape = "box"
+from = [-500, -500, 1000]
+to = [500, 500, 1500]
+warning = 400
+guards = ["tcp"]
+[region.lamp]
+shape = "sphere"
+centre = [0, 0, 0]
+radius = 100
+warning = 100
+guards = ["tcp"]
+life = "temporary"
+"""
+
+
+@pytest.fixture
+def monitor(tmp_path_factory: pytest.TempPathFactory) -> er.Monitor:
+    """A rail that ends at a region, and begins in one that is off at first."""
+    file = tmp_path_factory.mktemp("cell") / "cell.toml"
+    file.write_text(CELL)
+    return er.Monitor(er.Cell.load(file))
+
+
+def test_the_overrides_along_a_recording_are_those_of_the_run() -> None:
+    # Its law needs positions alone.
+    cell = er.Cell.load(ROOT / "examples/full_speed/cell.toml")
+    trace = cell.run().trace()
+    found = er.Monitor(cell).evaluate(trace.times_s, trace.q)
+    assert found.robots == cell.robots and found.speed_override.shape == (len(trace.times_s), 1)
+    assert (found.speed_override[:, 0] == trace.speed_override).all() and found.speed_override.min() < 0.9
+    assert {event for *_, event in found.events} >= {"warn_in"}
+    assert (found.times_s == trace.times_s).all() and len(found.reason) == len(trace.times_s)
+
+
+def test_the_override_falls_with_the_distance(monitor: er.Monitor) -> None:
+    assert (monitor.robots, monitor.joints, monitor.regions) == (["rail"], ["rail.joint_1"], ["end", "lamp"])
+    for k, z_m in enumerate(np.linspace(0.2, 0.9, 8)):
+        # Slowly enough that no joint is faster than its limit.
+        tick = monitor.tick(2.0 * k, [z_m])["rail"]
+        distance_m = 1.0 - z_m
+        assert tick.speed_override == pytest.approx(min(1.0, distance_m / 0.4), abs=1e-9)
+        assert monitor.distance("rail", "end") == pytest.approx(distance_m, abs=1e-9)
+        if tick.speed_override < 1:
+            assert tick.region == "end" and tick.distance_m == pytest.approx(distance_m) and "end" in tick.reason
+        else:
+            assert (tick.region, tick.distance_m, tick.reason) == (None, None, "free")
+        assert tick.events == ([("end", "warn_in")] if k == 5 else [])
+        assert tick == er.Tick(*(getattr(tick, name) for name in tick.__dataclass_fields__))
+
+
+def test_what_is_no_measurement_is_override_0_with_a_reason(monitor: er.Monitor) -> None:
+    assert monitor.tick(0.0, [0.3])["rail"].speed_override == 1.0
+    for q in (math.nan, math.inf, -math.inf):
+        tick = monitor.tick(0.002, np.array([q]))["rail"]
+        assert tick.speed_override == 0.0 and tick.is_fault and tick.reason
+    # A jump, and time that stands still or does not exist.
+    assert monitor.tick(0.004, [0.3])["rail"].is_fault is False
+    assert monitor.tick(0.006, [0.9])["rail"].is_fault
+    for now_s in (0.001, math.nan, math.inf):
+        assert monitor.tick(now_s, [0.9])["rail"].speed_override == 0.0
+    for override in (math.nan, -1.0, 2.0):
+        assert 0.0 <= monitor.tick(0.5, [0.9], programmed_override=override)["rail"].speed_override <= 1.0
+
+
+def test_regions_are_switched(monitor: er.Monitor) -> None:
+    assert not monitor.is_active("lamp") and monitor.is_active("end")
+    assert monitor.tick(0.0, [0.05])["rail"].speed_override == 1.0 and monitor.distance("rail", "lamp") == math.inf
+    monitor.switch("lamp", True)
+    assert monitor.tick(0.002, [0.05])["rail"].speed_override == 0.0 and monitor.is_active("lamp")
+    assert monitor.distance("rail", "lamp") == 0.0 and monitor.distance("rail", "end", limit_m=0.5) == math.inf
+    monitor.switch("lamp", False)
+    assert monitor.tick(2.0, [0.05])["rail"].speed_override > 0.0 and not monitor.is_active("lamp")
+    with pytest.raises(er.ArgumentError, match="`end` is permanent"):
+        monitor.switch("end", False)
+    with pytest.raises(er.ArgumentError, match='no region is called "x"\n  write: end, lamp'):
+        monitor.switch("x", True)
+    with pytest.raises(er.ArgumentError, match='no robot is called "x"\n  write: one of rail'):
+        monitor.distance("x", "end")
+
+
+def test_two_robots_grant_each_other_a_region(exchange: Path) -> None:
+    cell = er.Cell.load(exchange)
+    run = cell.run()
+    traces = [run.trace(robot) for robot in cell.robots]
+    q = np.ascontiguousarray(np.hstack([trace.q for trace in traces]))
+    # Velocities and intents: a monitor that knows neither would be more careful than that of the run.
+    qd = np.gradient(q, traces[0].times_s, axis=0)
+    found = er.Monitor(cell).evaluate(traces[0].times_s, q, qd, intent=qd)
+    assert found.robots == cell.robots and found.speed_override.shape == (len(q), 2)
+    granted = [(robot, region) for _, robot, region, event in found.events if event == "granted"]
+    assert {robot for robot, _ in granted} == set(cell.robots) and len({region for _, region in granted}) == 1
+
+
+def test_wrong_arrays_say_what_to_write(monitor: er.Monitor) -> None:
+    with pytest.raises(er.ArrayError, match="write: 1 finite numbers: rail.joint_1"):
+        monitor.tick(0.0, [0.1, 0.2])
+    with pytest.raises(er.ArrayError, match="`qd`"):
+        monitor.tick(0.0, [0.1], [0.1, 0.2])
+    rows = np.array([[0.1], [0.1], [0.1]])
+    with pytest.raises(er.ArrayError, match=r"`times_s` has 2 values, `q` 3 rows\n  write: a time for each row"):
+        monitor.evaluate([0.0, 0.002], rows)
+    with pytest.raises(er.ArrayError, match="`qd` 2 rows"):
+        monitor.evaluate([0.0, 0.002, 0.004], rows, rows[:2].copy())
+    with pytest.raises(er.ArrayError, match="row 1, column 0 is NaN"):
+        monitor.evaluate([0.0, 0.002], np.array([[0.1], [np.nan]]))
+    empty = monitor.evaluate([], np.zeros((0, 1)))
+    assert empty.speed_override.shape == (0, 1) and empty.reason == [] and empty.events == []

@@ -1,0 +1,55 @@
+"""Pages of robots, cells and paths, in files and notebooks."""
+
+from __future__ import annotations
+
+import re
+import webbrowser
+from pathlib import Path
+
+import pytest
+
+import elbowroom as er
+from conftest import ROOT
+from elbowroom.pages import Paged
+
+
+def outside(page: str) -> list[str]:
+    """What a browser would fetch."""
+    return re.findall(r'(?:src|href)="(?:https?:)?//[^"]+"', page)
+
+
+def check(source: Paged, names: list[str]) -> None:
+    page = source.page()
+    assert page.startswith("<!DOCTYPE html>") and not outside(page) and len(page) > 20_000
+    missing = [name for name in names if name not in page]
+    assert not missing, missing
+    frame = source._repr_html_()  # type: ignore[attr-defined]
+    assert frame.startswith("<iframe") and 'srcdoc="&lt;!DOCTYPE' in frame
+
+
+def test_a_robot_shows_its_joints(rx60b: Path) -> None:
+    robot = er.Robot.load(rx60b, rx60b.with_suffix(".srdf"))
+    check(robot, robot.joints)
+
+
+def test_a_cell_and_a_path_show_the_scene(exchange: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cell = er.Cell.load(exchange)
+    check(cell, cell.robots)
+    path = er.plan(cell, "left", [1.0, 0.9, 0.2, 0, 0.8, 0], [-1.0, 0.9, 0.2, 0, 0.8, 0])
+    check(path, cell.robots)
+    # The time of the path is that of the run in which the robot plays it.
+    told = re.search(r"left[^.]*?finished[^.]*?([0-9.]+) s", path.page())
+    assert told is not None and float(told[1]) == pytest.approx(path.duration_s, abs=0.05), path.duration_s
+    opened: list[str] = []
+    monkeypatch.setattr(webbrowser, "open", opened.append)
+    file = er.show(path)
+    assert opened == [file.as_uri()] and len(file.read_text(encoding="utf-8")) > 20_000
+    file.unlink()
+    assert er.save(cell, tmp_path / "cell.html").stat().st_size > 20_000
+
+
+def test_a_cell_whose_arm_a_person_guides_has_a_page_at_once() -> None:
+    cell = er.Cell.load(ROOT / "examples/guided/cell.toml")
+    check(cell, cell.robots)
+    nothing = er.plan(er.Cell.load(ROOT / "examples/exchange/cell.toml"), "left", [1.0, 0.9, 0.2, 0, 0.8, 0], [1.0, 0.9, 0.2, 0, 0.8, 0])
+    check(nothing, ["left"])
