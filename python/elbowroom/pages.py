@@ -8,6 +8,8 @@ import webbrowser
 from pathlib import Path
 from typing import Protocol
 
+from elbowroom.errors import ArgumentError
+
 __all__ = ["Paged", "frame", "save", "show"]
 
 
@@ -25,8 +27,12 @@ def frame(page: str) -> str:
 
 def save(source: Paged, file: str | Path) -> Path:
     """Write the page of a robot, a cell, a path or a run to a file."""
+    page = getattr(source, "page", None)
+    if page is None:
+        name = type(source).__name__
+        raise ArgumentError(f"a {name} has no page\n  write: a Robot, a Cell, a Path or a Run")
     path = Path(file)
-    path.write_text(source.page(), encoding="utf-8")
+    path.write_text(page(), encoding="utf-8")
     return path
 
 

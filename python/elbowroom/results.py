@@ -95,13 +95,19 @@ class Path:
     q: npt.NDArray[np.float64]
     cost_rad: float | None
     planning_us: int
-    _record: PathRecord = field(repr=False)
+    _record: PathRecord | None = field(repr=False)
 
     def __bool__(self) -> bool:
         return self.found
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the cell out of copies and pickles."""
+        return self.__dict__ | {"_record": None}
+
     def page(self) -> str:
-        """Return the robot on its path as an HTML page that needs no network."""
+        """Return the robot on its path as an HTML page that needs no network; not of a copy."""
+        if self._record is None:
+            raise ArgumentError("a copied path has no cell, so it has no page\n  write: the path that `plan` returned")
         return self._record.page()
 
     def _repr_html_(self) -> str:
@@ -158,11 +164,14 @@ class Tick:
     is_fault: bool
     region: str | None
     distance_m: float | None
-    events: list[tuple[str | None, str]]
+    events: tuple[tuple[str | None, str], ...]
 
     @classmethod
     def _by_robot(cls, ticks: list[tuple[Any, ...]]) -> dict[str, Tick]:
-        return {values[0]: cls(*values) for values in ticks}
+        return {
+            robot: cls(robot, factor, reason, is_fault, region, distance_m, tuple(events))
+            for robot, (factor, reason, is_fault), region, distance_m, events in ticks
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,7 +207,8 @@ class Overrides:
         reasons: list[str],
         events: list[tuple[float, str, str | None, str]],
     ) -> Overrides:
-        width = len(robots)
+        # A cell of mechanisms has no column.
+        width = max(len(robots), 1)
         rows = [reasons[at : at + width] for at in range(0, len(reasons), width)]
         return cls(robots, times_s, speed_override, rows, events)
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import pickle
+import threading
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 import elbowroom as er
@@ -64,7 +67,7 @@ def test_the_override_falls_with_the_distance(monitor: er.Monitor) -> None:
             assert tick.region == "end" and tick.distance_m == pytest.approx(distance_m) and "end" in tick.reason
         else:
             assert (tick.region, tick.distance_m, tick.reason) == (None, None, "free")
-        assert tick.events == ([("end", "warn_in")] if k == 5 else [])
+        assert tick.events == ((("end", "warn_in"),) if k == 5 else ())
         assert tick == er.Tick(*(getattr(tick, name) for name in tick.__dataclass_fields__))
 
 
@@ -78,8 +81,63 @@ def test_what_is_no_measurement_is_override_0_with_a_reason(monitor: er.Monitor)
     assert monitor.tick(0.006, [0.9])["rail"].is_fault
     for now_s in (0.001, math.nan, math.inf):
         assert monitor.tick(now_s, [0.9])["rail"].speed_override == 0.0
-    for override in (math.nan, -1.0, 2.0):
-        assert 0.0 <= monitor.tick(0.5, [0.9], programmed_override=override)["rail"].speed_override <= 1.0
+    for k, override in enumerate((math.nan, -1.0, 2.0)):
+        tick = monitor.tick(2.0 + k, [0.3], programmed_override=override)["rail"]
+        assert tick.speed_override == 0.0 and tick.is_fault
+    assert monitor.tick(9.0, [0.3], programmed_override=0.5)["rail"].speed_override <= 0.5
+
+
+def test_a_distance_that_was_not_measured_is_no_number(monitor: er.Monitor) -> None:
+    assert math.isnan(monitor.distance("rail", "end"))
+    monitor.tick(0.0, [0.5])
+    assert monitor.distance("rail", "end") == pytest.approx(0.5)
+    monitor.tick(0.002, [math.nan])
+    assert math.isnan(monitor.distance("rail", "end"))
+    for limit_m in (math.nan, -1.0):
+        with pytest.raises(er.ArgumentError, match="`limit_m` is"):
+            monitor.distance("rail", "end", limit_m)
+
+
+def test_an_evaluation_goes_on_until_it_begins_anew(monitor: er.Monitor) -> None:
+    times_s, q = np.arange(600) * 0.002, np.full((600, 1), 0.8)
+    whole = monitor.evaluate(times_s, q).speed_override
+    assert np.abs(whole - 0.5).max() < 1e-9 and (monitor.evaluate(times_s, q).speed_override == 0.0).any()
+    monitor.reset()
+    parts = [monitor.evaluate(times_s[part], q[part]).speed_override for part in (slice(0, 250), slice(250, 600))]
+    assert (np.vstack(parts) == whole).all()
+    # A row that is no number is found before the first tick.
+    monitor.reset()
+    with pytest.raises(er.ArrayError, match="row 599"):
+        monitor.evaluate(times_s, np.vstack([q[:-1], [[np.nan]]]))
+    assert (monitor.evaluate(times_s, q).speed_override == whole).all()
+
+
+def test_threads_take_turns_and_copies_are_refused(monitor: er.Monitor) -> None:
+    times_s, q = np.arange(20_000) * 0.002, np.full((20_000, 1), 0.8)
+    found: list[npt.NDArray[np.float64]] = []
+    worker = threading.Thread(target=lambda: found.append(monitor.evaluate(times_s, q).speed_override))
+    worker.start()
+    while worker.is_alive():
+        assert monitor.robots == ["rail"] and monitor.is_active("end") and "rail" not in repr(monitor)
+    worker.join()
+    assert np.abs(found[0] - 0.5).max() < 1e-9
+    with pytest.raises(er.ArgumentError, match="in each process"):
+        pickle.dumps(monitor)
+
+
+def test_a_mechanism_is_not_guarded(tmp_path: Path) -> None:
+    text = CELL.replace("[region.end]", '''[robot.door]
+kind = "mechanism"
+base = { at = [5000, 0, 0] }
+dh = [{ min = -90, max = 90, speed = 45 }]
+links = [{ sphere = { radius = 50 } }]
+[region.end]''')
+    (tmp_path / "cell.toml").write_text(text)
+    monitor = er.Monitor(er.Cell.load(tmp_path / "cell.toml"))
+    assert monitor.robots == ["rail"] and len(monitor.joints) == 2
+    q = dict(zip(monitor.joints, [0.3, 0.3]))
+    assert list(monitor.tick(0.0, list(q.values()))) == ["rail"]
+    assert monitor.evaluate([0.002], np.array([[0.3, 0.3]])).speed_override.shape == (1, 1)
 
 
 def test_regions_are_switched(monitor: er.Monitor) -> None:
@@ -103,7 +161,7 @@ def test_two_robots_grant_each_other_a_region(exchange: Path) -> None:
     run = cell.run()
     traces = [run.trace(robot) for robot in cell.robots]
     q = np.ascontiguousarray(np.hstack([trace.q for trace in traces]))
-    # Velocities and intents: a monitor that knows neither would be more careful than that of the run.
+    # Velocities as differences, for the intents too: grants need no more.
     qd = np.gradient(q, traces[0].times_s, axis=0)
     found = er.Monitor(cell).evaluate(traces[0].times_s, q, qd, intent=qd)
     assert found.robots == cell.robots and found.speed_override.shape == (len(q), 2)
@@ -112,7 +170,7 @@ def test_two_robots_grant_each_other_a_region(exchange: Path) -> None:
 
 
 def test_wrong_arrays_say_what_to_write(monitor: er.Monitor) -> None:
-    with pytest.raises(er.ArrayError, match="write: 1 finite numbers: rail.joint_1"):
+    with pytest.raises(er.ArrayError, match="write: 1 numbers: rail.joint_1"):
         monitor.tick(0.0, [0.1, 0.2])
     with pytest.raises(er.ArrayError, match="`qd`"):
         monitor.tick(0.0, [0.1], [0.1, 0.2])
@@ -123,5 +181,8 @@ def test_wrong_arrays_say_what_to_write(monitor: er.Monitor) -> None:
         monitor.evaluate([0.0, 0.002, 0.004], rows, rows[:2].copy())
     with pytest.raises(er.ArrayError, match="row 1, column 0 is NaN"):
         monitor.evaluate([0.0, 0.002], np.array([[0.1], [np.nan]]))
+    for times in ("abc", None, np.zeros((3, 1))):
+        with pytest.raises(er.ArrayError, match="`times_s` is not a row of numbers"):
+            monitor.evaluate(times, rows)  # type: ignore[arg-type]
     empty = monitor.evaluate([], np.zeros((0, 1)))
     assert empty.speed_override.shape == (0, 1) and empty.reason == [] and empty.events == []

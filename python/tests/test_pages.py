@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 import webbrowser
 from pathlib import Path
@@ -14,8 +15,8 @@ from elbowroom.pages import Paged
 
 
 def outside(page: str) -> list[str]:
-    """What a browser would fetch."""
-    return re.findall(r'(?:src|href)="(?:https?:)?//[^"]+"', page)
+    """What a browser might fetch: addresses, but for names of XML."""
+    return [found for found in re.findall(r"(?:https?|wss?)://[^\s\"'<>)]+", page) if "w3.org" not in found]
 
 
 def check(source: Paged, names: list[str]) -> None:
@@ -30,6 +31,23 @@ def check(source: Paged, names: list[str]) -> None:
 def test_a_robot_shows_its_joints(rx60b: Path) -> None:
     robot = er.Robot.load(rx60b, rx60b.with_suffix(".srdf"))
     check(robot, robot.joints)
+
+
+def test_a_robot_shows_itself_from_another_folder(rx60b: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(rx60b.parent)
+    robot = er.Robot.load(rx60b.name)
+    monkeypatch.chdir(tmp_path)
+    assert robot.page().startswith("<!DOCTYPE html>")
+
+
+def test_a_copied_path_has_its_arrays_and_what_has_no_page_is_told(exchange: Path, tmp_path: Path) -> None:
+    path = er.plan(er.Cell.load(exchange), "left", [1.0, 0.9, 0.2, 0, 0.8, 0], [0.9, 0.9, 0.2, 0, 0.8, 0])
+    copied = pickle.loads(pickle.dumps(path))
+    assert (copied.q == path.q).all() and copied.found
+    with pytest.raises(er.ArgumentError, match="a copied path has no cell"):
+        copied.page()
+    with pytest.raises(er.ArgumentError, match="a int has no page"):
+        er.save(5, tmp_path / "page.html")  # type: ignore[arg-type]
 
 
 def test_a_cell_and_a_path_show_the_scene(exchange: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

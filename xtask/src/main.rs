@@ -58,8 +58,9 @@ cargo xtask COMMAND
   dist
         the library for C and C++ as a release build: shared library, headers, package file of pkg-config, example and licences in
         target/dist/elbowroom-VERSION-TARGET, and as an archive (docs/c-api.md)
-  wheel
-        the Python package as a wheel in target/wheels; its tests run with it in a new environment (docs/python.md)
+  wheel [--manylinux]
+        the Python package as a wheel in target/wheels; its tests run with it in a new environment (docs/python.md); --manylinux:
+        for every Linux with glibc 2.28 or newer (docs/releasing.md)
   documents
         no long line, no broken link, no unknown name in documents
   inventory [DIR]
@@ -146,7 +147,8 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["quick", "--since", commit] => Ok(quick::run(&root, commit)?),
         ["soak", names @ ..] => soak::run(&root, names),
         ["dist"] => Ok(dist::run(&root)?),
-        ["wheel"] => Ok(wheel::run(&root)?),
+        ["wheel"] => Ok(wheel::run(&root, false)?),
+        ["wheel", "--manylinux"] => Ok(wheel::run(&root, true)?),
         ["layers"] => Ok(layers::run(&root)?),
         ["layers", "--write"] => Ok(layers::write(&root)?),
         ["inventory"] => Ok(inventory::run(&root)?),

@@ -6,19 +6,28 @@ use xtask::{python, shell};
 
 /// Builds the wheel. Pinned, as everything that makes a release.
 const MATURIN: &str = "maturin==1.16.0";
+/// The same with Zig, which links against old versions of the C library.
+const MATURIN_AND_ZIG: &str = "maturin[zig]==1.16.0";
+/// The oldest Linux for which wheels are made: that with this version of glibc.
+const MANYLINUX: &str = "manylinux_2_28";
 /// Largest wheel, bytes.
 const LARGEST: u64 = 25 * 1024 * 1024;
 
-/// Builds `target/wheels/elbowroom-VERSION-…whl`, and runs the tests with it in a new environment.
-pub fn run(root: &Path) -> Result<(), String> {
+/// Builds `target/wheels/elbowroom-VERSION-…whl`, for this machine or for old Linux too, and runs the tests with it in a new
+/// environment.
+pub fn run(root: &Path, manylinux: bool) -> Result<(), String> {
     let target = shell::target_folder(root);
-    let builder = python::environment(root, &target.join("wheel/build"), &[MATURIN], &[])?;
+    let maturin = if manylinux { MATURIN_AND_ZIG } else { MATURIN };
+    let builder = python::environment(root, &target.join("wheel/build"), &[maturin], &[])?;
     let wheels = target.join("wheels");
     if wheels.exists() {
         std::fs::remove_dir_all(&wheels).map_err(|e| format!("{}: {e}", wheels.display()))?;
     }
     let out = wheels.to_string_lossy().into_owned();
-    let words = ["-m", "maturin", "build", "--release", "--locked", "--out", &out];
+    let mut words = vec!["-m", "maturin", "build", "--release", "--locked", "--out", &out];
+    if manylinux {
+        words.extend(["--zig", "--compatibility", MANYLINUX]);
+    }
     shell::run(&root.join("python"), &builder.to_string_lossy(), &words, &[])?;
     let wheel = only_wheel(&wheels)?;
     let bytes = std::fs::metadata(&wheel).map_err(|e| format!("{}: {e}", wheel.display()))?.len();

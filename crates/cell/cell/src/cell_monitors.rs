@@ -5,7 +5,10 @@ use std::sync::Arc;
 
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::{AccessClass, Event, Monitor, Snapshot, SourceState, SwitchError, TickReport};
+use elbowroom_monitor::{
+    AccessClass, Event, EventKind, Life, Monitor, OverrideReason, RegionKind, Snapshot, SourceState, SwitchError,
+    TickReport,
+};
 
 use crate::configure::{self, MonitorSetup};
 use crate::{Cell, CellRegionId, Frames};
@@ -17,7 +20,8 @@ pub struct CellInstant<'a> {
     pub now_s: f64,
     /// Joint positions.
     pub q: &'a [f64],
-    /// Joint velocities; empty if they are not known: see [`Snapshot::qd`].
+    /// Joint velocities; empty if they are not known: see [`Snapshot::qd`]. Regions that ride on a robot then move by the
+    /// difference of its last positions, and are lost in the first tick.
     pub qd: &'a [f64],
     /// Joint velocities of the programs at override 1; empty if they are not known: see [`Snapshot::intent`].
     pub intent: &'a [f64],
@@ -61,8 +65,10 @@ pub struct CellMonitors {
     states: Vec<ChainState>,
     /// Place of each robot's values.
     places: Vec<Range<usize>>,
-    /// Whether each monitor has told the interlock where its robot is.
-    has_published: bool,
+    /// Whether a monitor must still tell the interlock where its robot is, before robots are granted regions.
+    must_publish: bool,
+    /// Time, s, and positions of the last tick.
+    last: Option<(f64, Vec<f64>)>,
 }
 
 impl CellMonitors {
@@ -81,7 +87,8 @@ impl CellMonitors {
         };
         let places = cell.robots.iter().map(place).collect();
         let states = cell.robots.iter().map(|robot| ChainState::new(&robot.robot.chain)).collect();
-        Ok(Self { setups, monitors, states, places, has_published: false, cell })
+        let must_publish = cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. }));
+        Ok(Self { setups, monitors, states, places, must_publish, last: None, cell })
     }
 
     /// The cell.
@@ -97,20 +104,31 @@ impl CellMonitors {
     /// Ticks every monitor, in the order of the robots. Whatever is wrong with the values, such as NaN or their number,
     /// ends in override 0 and its reason.
     ///
-    /// Before the first tick each monitor has one a period earlier at the same place: those of the other robots then know
-    /// which exchange regions are occupied.
+    /// In a cell with exchange regions each monitor has a tick before the first one, a period earlier at the same place, as
+    /// in a run: a robot that starts inside would otherwise wait for robots without a status.
     pub fn tick(&mut self, at: &CellInstant<'_>) -> Vec<RobotTick> {
         self.place(at);
-        let mut before = Vec::new();
-        if !self.has_published {
-            self.has_published = true;
-            before = self.tick_all(&CellInstant { now_s: at.now_s - self.cell.timing.tick_s, ..*at });
+        let before = if self.must_publish { self.publish(at) } else { Vec::new() };
+        let mut ticks = self.tick_all(at, at.now_s);
+        for (tick, events) in ticks.iter_mut().zip(before) {
+            tick.events.splice(0..0, events);
         }
-        let mut ticks = self.tick_all(at);
-        for (tick, earlier) in ticks.iter_mut().zip(before) {
-            tick.events.splice(0..0, earlier.events);
-        }
+        let is_whole = self.places.last().is_none_or(|place| at.q.len() >= place.end);
+        self.last = (is_whole && at.now_s.is_finite()).then(|| (at.now_s, at.q.to_vec()));
         ticks
+    }
+
+    /// Ticks every monitor once before the first tick, and returns the events of each that are not about the input.
+    fn publish(&mut self, at: &CellInstant<'_>) -> Vec<Vec<Event>> {
+        let ticks = self.tick_all(at, at.now_s - self.cell.timing.tick_s);
+        self.must_publish =
+            !at.qd.is_empty() && ticks.iter().any(|t| matches!(t.report.reason, OverrideReason::Fault(_)));
+        if at.qd.is_empty() {
+            // Twice the same place is no rest: velocities are still not known.
+            self.monitors.iter_mut().for_each(Monitor::forget_position);
+        }
+        let is_told = |event: &Event| !matches!(event.kind, EventKind::Fault | EventKind::Recovered);
+        ticks.into_iter().map(|tick| tick.events.into_iter().filter(is_told).collect()).collect()
     }
 
     /// Switches a temporary region on or off in every monitor that has it, from the next tick on.
@@ -118,9 +136,12 @@ impl CellMonitors {
     /// # Errors
     /// [`SwitchError`] if the region is permanent or the access class is too low; then nothing changes.
     pub fn switch(&mut self, region: CellRegionId, on: bool, who: AccessClass) -> Result<(), SwitchError> {
-        let name = &self.cell.regions[region.0].region.name;
+        let region = &self.cell.regions[region.0].region;
+        if region.life == Life::Permanent {
+            return Err(SwitchError::Permanent(region.name.clone()));
+        }
         for monitor in &mut self.monitors {
-            if let Some(own) = monitor.region(name) {
+            if let Some(own) = monitor.region(&region.name) {
                 monitor.switch(own, on, who)?;
             }
         }
@@ -128,24 +149,34 @@ impl CellMonitors {
     }
 
     fn place(&mut self, at: &CellInstant<'_>) {
-        for ((state, place), robot) in self.states.iter_mut().zip(&self.places).zip(&self.cell.robots) {
+        let Self { states, places, cell, last, .. } = self;
+        for ((state, place), robot) in states.iter_mut().zip(&*places).zip(&cell.robots) {
             if let Some(q) = at.q.get(place.clone()) {
                 state.q.copy_from_slice(q);
             }
-            match at.qd.get(place.clone()) {
-                Some(qd) => state.qd.copy_from_slice(qd),
-                None => state.qd.fill(0.0),
+            match (at.qd.get(place.clone()), &*last) {
+                (Some(qd), _) => state.qd.copy_from_slice(qd),
+                (None, Some((then_s, then))) => {
+                    let since_s = at.now_s - then_s;
+                    for ((qd, q), then) in state.qd.iter_mut().zip(&state.q).zip(&then[place.clone()]) {
+                        *qd = if since_s > 0.0 { (q - then) / since_s } else { f64::NAN };
+                    }
+                }
+                // Nobody knows how fast what rides on it moves.
+                (None, None) => state.qd.fill(f64::NAN),
             }
             robot.robot.chain.forward_motion(state);
         }
     }
 
-    fn tick_all(&mut self, at: &CellInstant<'_>) -> Vec<RobotTick> {
+    /// Ticks every monitor at a time, s, that may be earlier than the instant.
+    fn tick_all(&mut self, at: &CellInstant<'_>, now_s: f64) -> Vec<RobotTick> {
         let frames = Frames::new(&self.cell);
         let robots = self.monitors.iter_mut().zip(&self.setups).zip(&self.places);
         let tick = |((monitor, setup), place): ((&mut Monitor, &MonitorSetup), &Range<usize>)| {
-            let sources = frames.sources(&setup.sources, &self.states, at.now_s);
-            let report = monitor.tick(&snapshot(at, place, &sources));
+            let sources = frames.sources(&setup.sources, &self.states, at.now_s).into_iter();
+            let sources: Vec<_> = sources.map(|source| SourceState { stamp_s: now_s, ..source }).collect();
+            let report = monitor.tick(&snapshot(&CellInstant { now_s, ..*at }, place, &sources));
             RobotTick { report, events: monitor.events().to_vec() }
         };
         robots.map(tick).collect()

@@ -8,10 +8,15 @@ use crate::RunOptions;
 
 /// Returns a cell in which these robots play their motions, and the options of the run.
 ///
-/// As in a plan, all other robots stay at their start and objects at their first poses; the monitors do not limit the
-/// speed, so the times are those of the motions. Without motions the run is the cell at its start.
+/// As in a plan, all other robots stay at their start and objects at their first poses; nothing is perceived, and the
+/// monitors do not limit the speed, so the times are those of the motions. Without motions the run is the cell at its start.
 pub fn playback(cell: &Cell, motions: impl IntoIterator<Item = (RobotId, JointTrajectory)>) -> (Cell, RunOptions) {
+    // The copy has the shields that are made already.
+    for fixture in &cell.guidance.fixtures {
+        let _ = fixture.shield(cell);
+    }
     let mut cell = cell.clone();
+    cell.sensors.clear();
     for robot in &mut cell.robots {
         (robot.program, robot.avoidance) = (None, None);
     }

@@ -12,7 +12,7 @@ use crate::output_file::write_bytes;
 use crate::run::write_files;
 use crate::simulation::Simulation;
 
-static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../../examples");
+static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/built_in");
 /// Default output folder.
 const OUT: &str = "elbowroom-out";
 

@@ -54,6 +54,15 @@ impl<'py> Rows<'py> {
         self.array.shape()[0]
     }
 
+    /// Copies all rows, one after another.
+    pub fn all(&self) -> Result<Vec<f64>, Fault> {
+        let mut values = Vec::with_capacity(self.len() * self.width);
+        for begin in (0..self.len()).step_by(CHUNK) {
+            values.extend(self.chunk(begin)?);
+        }
+        Ok(values)
+    }
+
     /// Copies rows from `begin` on, at most [`CHUNK`], one after another.
     pub fn chunk(&self, begin: usize) -> Result<Vec<f64>, Fault> {
         let end = self.len().min(begin + CHUNK);

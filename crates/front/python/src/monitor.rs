@@ -1,17 +1,21 @@
 //! The monitors of a cell: overrides of the speed, tick by tick.
 
-use std::sync::Arc;
+use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use elbowroom::cell::{Cell as Model, CellInstant, CellMonitors, CellRegionId, RobotTick};
+use elbowroom::cell::{Cell as Model, CellInstant, CellMonitors, CellRegionId, CellRobot, RobotTick};
 use elbowroom::monitor::{AccessClass, Monitor as RobotMonitor, OverrideReason};
 use elbowroom::robot::RobotId;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{CHUNK, Rows, vector};
+use crate::arrays::Rows;
 use crate::cell::Cell;
 use crate::error::Fault;
 use crate::rows::shaped;
+
+/// Rows between two looks at the signals: the slowest tick of the examples takes an eighth of a millisecond.
+const BETWEEN_SIGNALS: usize = 256;
 
 /// Region, and what happened.
 type EventNames = Vec<(Option<String>, &'static str)>;
@@ -42,10 +46,39 @@ type EventNames = Vec<(Option<String>, &'static str)>;
 /// (1.0, 'free')
 /// >>> monitor.tick(0.002, [float("nan")] * 6)["ns16"].speed_override
 /// 0.0
-#[pyclass(module = "elbowroom")]
+#[pyclass(module = "elbowroom", frozen)]
 pub struct Monitor {
-    monitors: CellMonitors,
+    cell: Arc<Model>,
+    state: Mutex<State>,
     joints: Vec<String>,
+}
+
+/// What changes from tick to tick.
+struct State {
+    monitors: CellMonitors,
+    /// The robots whose distances were measured in the last tick.
+    measured: Vec<bool>,
+}
+
+impl State {
+    fn new(cell: Arc<Model>) -> Result<Self, Fault> {
+        Ok(Self { measured: vec![false; cell.robots.len()], monitors: CellMonitors::new(cell)? })
+    }
+
+    fn tick(&mut self, at: &CellInstant<'_>) -> Vec<RobotTick> {
+        let ticks = self.monitors.tick(at);
+        self.measured = ticks.iter().map(|tick| !is_fault(tick)).collect();
+        ticks
+    }
+
+    /// Each robot that is guarded, with its tick and its monitor. Nothing guards a mechanism.
+    fn guarded<'a>(
+        &'a self,
+        ticks: &'a [RobotTick],
+    ) -> impl Iterator<Item = (&'a CellRobot, &'a RobotTick, &'a RobotMonitor)> {
+        let all = self.monitors.cell().robots.iter().zip(ticks).zip(self.monitors.monitors());
+        all.map(|((robot, tick), monitor)| (robot, tick, monitor)).filter(|(robot, ..)| !robot.is_mechanism())
+    }
 }
 
 /// Arrays of an instant, or of many.
@@ -73,12 +106,13 @@ impl<'a> Motion<'a> {
 }
 
 impl Monitor {
-    fn cell(&self) -> &Arc<Model> {
-        self.monitors.cell()
+    /// The state, for one thread at a time. Call it only where other threads of Python may run, which may hold it.
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn region_id(&self, name: &str) -> Result<CellRegionId, Fault> {
-        let regions = &self.cell().regions;
+        let regions = &self.cell.regions;
         let found = regions.iter().position(|r| r.region.name == name);
         found.map(CellRegionId).ok_or_else(|| {
             let names: Vec<&str> = regions.iter().map(|r| r.region.name.as_str()).collect();
@@ -88,11 +122,10 @@ impl Monitor {
     }
 
     fn robot_id(&self, name: &str) -> Result<RobotId, Fault> {
-        let robots = &self.cell().robots;
-        let found = robots.iter().position(|r| r.name == name);
+        let robots = &self.cell.robots;
+        let found = robots.iter().position(|r| r.name == name && !r.is_mechanism());
         found.map(RobotId).ok_or_else(|| {
-            let names: Vec<&str> = robots.iter().map(|r| r.name.as_str()).collect();
-            Fault::Argument(format!("no robot is called \"{name}\"\n  write: one of {}", names.join(", ")))
+            Fault::Argument(format!("no robot is called \"{name}\"\n  write: one of {}", self.robots().join(", ")))
         })
     }
 
@@ -111,11 +144,11 @@ struct Answers {
 }
 
 impl Answers {
-    /// Ticks through the rows of a motion.
-    fn add(&mut self, monitors: &mut CellMonitors, motion: &Motion<'_>) {
-        for (at, &now_s) in motion.times_s.iter().enumerate() {
-            let ticks = monitors.tick(&motion.at(at));
-            for ((tick, monitor), robot) in ticks.iter().zip(monitors.monitors()).zip(&monitors.cell().robots) {
+    /// Ticks through rows of a motion.
+    fn add(&mut self, state: &mut State, motion: &Motion<'_>, rows: Range<usize>) {
+        for at in rows {
+            let (now_s, ticks) = (motion.times_s[at], state.tick(&motion.at(at)));
+            for (robot, tick, monitor) in state.guarded(&ticks) {
                 self.overrides.push(tick.report.speed_override);
                 self.reasons.push(reason(tick, monitor));
                 let named = events(tick, monitor).into_iter();
@@ -135,30 +168,36 @@ fn same_count(times: usize, rows: &Rows<'_>, name: &str) -> Result<(), Fault> {
 
 /// One row with a value per joint, finite or not: a monitor answers what is not.
 fn row(value: &Bound<'_, PyAny>, name: &str, joints: &[String]) -> Result<Vec<f64>, Fault> {
-    match value.extract::<Vec<f64>>() {
-        Ok(values) if values.len() == joints.len() => Ok(values),
-        // The message.
-        _ => vector(value, name, joints),
+    let wanted = || format!("{} numbers: {}", joints.len(), joints.join(", "));
+    let values = numbers(value, name, &wanted)?;
+    if values.len() == joints.len() {
+        return Ok(values);
     }
+    Err(Fault::Array(format!("`{name}` has {} numbers\n  write: {}", values.len(), wanted())))
+}
+
+fn numbers(value: &Bound<'_, PyAny>, name: &str, wanted: &dyn Fn() -> String) -> Result<Vec<f64>, Fault> {
+    value.extract().map_err(|_| Fault::Array(format!("`{name}` is not a row of numbers\n  write: {}", wanted())))
 }
 
 #[pymethods]
 impl Monitor {
     #[new]
     fn new(py: Python<'_>, cell: &Bound<'_, Cell>) -> PyResult<Self> {
-        let model = cell.get().model.clone();
-        let monitors = py.detach(|| CellMonitors::new(model).map_err(Fault::from))?;
-        let of_robot = |robot: &elbowroom::cell::CellRobot| {
+        let cell = cell.get().model.clone();
+        let state = py.detach(|| State::new(cell.clone()))?;
+        let of_robot = |robot: &CellRobot| {
             robot.joint_names().into_iter().map(|joint| format!("{}.{joint}", robot.name)).collect::<Vec<_>>()
         };
-        let joints = monitors.cell().robots.iter().flat_map(of_robot).collect();
-        Ok(Self { monitors, joints })
+        let joints = cell.robots.iter().flat_map(of_robot).collect();
+        Ok(Self { cell, state: Mutex::new(state), joints })
     }
 
-    /// The names of the robots, in the order of the cell.
+    /// The names of the robots that are guarded, in the order of the cell: all but mechanisms.
     #[getter]
     fn robots(&self) -> Vec<&str> {
-        self.cell().robots.iter().map(|robot| robot.name.as_str()).collect()
+        let guarded = self.cell.robots.iter().filter(|robot| !robot.is_mechanism());
+        guarded.map(|robot| robot.name.as_str()).collect()
     }
 
     /// The names of the columns of states, `robot.joint`, side by side.
@@ -170,7 +209,7 @@ impl Monitor {
     /// The names of the regions.
     #[getter]
     fn regions(&self) -> Vec<&str> {
-        self.cell().regions.iter().map(|r| r.region.name.as_str()).collect()
+        self.cell.regions.iter().map(|r| r.region.name.as_str()).collect()
     }
 
     /// Tick the monitor of every robot.
@@ -182,8 +221,8 @@ impl Monitor {
     /// q
     ///     `(dof,)` joint values in the order of `joints`, rad or m.
     /// qd
-    ///     `(dof,)` joint velocities; `None`: not known. The law of stopping distances then derives them from successive
-    ///     positions, and the first override is 0.
+    ///     `(dof,)` joint velocities; `None`: not known. With the law of stopping distances, and for regions that ride on a
+    ///     robot, they are then derived from successive positions, and the first override is 0.
     /// intent
     ///     `(dof,)` joint velocities of the programs at override 1: lets a robot leave that was stopped in front of a region,
     ///     if the cell has `direction_aware`.
@@ -201,7 +240,7 @@ impl Monitor {
     ///     If the number of values is not that of the joints.
     #[pyo3(signature = (now_s, q, qd=None, *, intent=None, programmed_override=1.0))]
     fn tick<'py>(
-        &mut self,
+        &self,
         now_s: f64,
         q: &Bound<'py, PyAny>,
         qd: Option<&Bound<'py, PyAny>>,
@@ -212,27 +251,23 @@ impl Monitor {
         let q = row(q, "q", &self.joints)?;
         let (qd, intent) = (self.optional(qd, "qd")?, self.optional(intent, "intent")?);
         let motion = Motion { times_s: &[now_s], q: &q, qd: &qd, intent: &intent, programmed_override };
-        let ticks = self.monitors.tick(&motion.at(0));
-        let told = ticks.iter().zip(self.monitors.monitors()).zip(&self.cell().robots);
-        let told: Vec<_> = told
-            .map(|((tick, monitor), robot)| {
-                let (speed_override, is_fault) = (tick.report.speed_override, is_fault(tick));
+        let told: Vec<_> = py.detach(|| {
+            let mut state = self.state();
+            let ticks = state.tick(&motion.at(0));
+            let answer = |(robot, tick, monitor): (&CellRobot, &RobotTick, &RobotMonitor)| {
                 let (region, distance_m) = governing(tick, monitor).unzip();
-                (
-                    &robot.name,
-                    speed_override,
-                    reason(tick, monitor),
-                    is_fault,
-                    region,
-                    distance_m,
-                    events(tick, monitor),
-                )
-            })
-            .collect();
+                let told = (tick.report.speed_override, reason(tick, monitor), is_fault(tick));
+                (robot.name.clone(), told, region, distance_m, events(tick, monitor))
+            };
+            state.guarded(&ticks).map(answer).collect()
+        });
         py.import("elbowroom.results")?.getattr("Tick")?.getattr("_by_robot")?.call1((told,))
     }
 
     /// Tick through a motion, such as a recording.
+    ///
+    /// It goes on from the last tick, so that a motion may come in parts; `reset` begins anew. Rows are checked before the first
+    /// tick. An interrupted call leaves the monitors where it was interrupted.
     ///
     /// Parameters
     /// ----------
@@ -248,14 +283,15 @@ impl Monitor {
     /// Overrides
     #[pyo3(signature = (times_s, q, qd=None, *, intent=None, programmed_override=1.0))]
     fn evaluate<'py>(
-        &mut self,
-        times_s: Vec<f64>,
+        &self,
+        times_s: &Bound<'py, PyAny>,
         q: &Bound<'py, PyAny>,
         qd: Option<&Bound<'py, PyAny>>,
         intent: Option<&Bound<'py, PyAny>>,
         programmed_override: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = q.py();
+        let times_s = numbers(times_s, "times_s", &|| "a time for each row, in seconds".into())?;
         let rows = Rows::of(q, "q", &self.joints)?;
         let other = |value: Option<&Bound<'py, PyAny>>, name| {
             let found = value.map(|value| Rows::of(value, name, &self.joints)).transpose()?;
@@ -263,13 +299,13 @@ impl Monitor {
         };
         let (qd, intent) = (other(qd, "qd")?, other(intent, "intent")?);
         same_count(times_s.len(), &rows, "q")?;
+        let all = |rows: Option<&Rows>| rows.map_or(Ok(Vec::new()), Rows::all);
+        let (q, qd, intent) = (rows.all()?, all(qd.as_ref())?, all(intent.as_ref())?);
+        let motion = Motion { times_s: &times_s, q: &q, qd: &qd, intent: &intent, programmed_override };
         let mut answers = Answers::default();
-        for begin in (0..rows.len()).step_by(CHUNK) {
-            let times_s = &times_s[begin..rows.len().min(begin + CHUNK)];
-            let chunk = |rows: Option<&Rows>| rows.map_or(Ok(Vec::new()), |rows| rows.chunk(begin));
-            let (q, qd, intent) = (rows.chunk(begin)?, chunk(qd.as_ref())?, chunk(intent.as_ref())?);
-            let motion = Motion { times_s, q: &q, qd: &qd, intent: &intent, programmed_override };
-            py.detach(|| answers.add(&mut self.monitors, &motion));
+        for begin in (0..rows.len()).step_by(BETWEEN_SIGNALS) {
+            let part = begin..rows.len().min(begin + BETWEEN_SIGNALS);
+            py.detach(|| answers.add(&mut self.state(), &motion, part));
             py.check_signals()?;
         }
         let robots: Vec<String> = self.robots().into_iter().map(str::to_owned).collect();
@@ -278,23 +314,32 @@ impl Monitor {
         make.call1((robots, PyArray1::from_vec(py, times_s), overrides, answers.reasons, answers.events))
     }
 
+    /// Begin anew, as after the construction: no tick was yet, and every region is as in the file.
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| {
+            *self.state() = State::new(self.cell.clone())?;
+            Ok::<(), Fault>(())
+        })?;
+        Ok(())
+    }
+
     /// Switch a temporary region on or off, from the next tick on.
     ///
     /// Raises
     /// ------
     /// ArgumentError
     ///     If there is no such region, or it is permanent.
-    fn switch(&mut self, region: &str, on: bool) -> PyResult<()> {
+    fn switch(&self, py: Python<'_>, region: &str, on: bool) -> PyResult<()> {
         let id = self.region_id(region)?;
-        let switched = self.monitors.switch(id, on, AccessClass::Integrator);
+        let switched = py.detach(|| self.state().monitors.switch(id, on, AccessClass::Integrator));
         switched.map_err(|e| Fault::Argument(e.to_string()).into())
     }
 
     /// Whether a region is switched on.
-    fn is_active(&self, region: &str) -> PyResult<bool> {
+    fn is_active(&self, py: Python<'_>, region: &str) -> PyResult<bool> {
         self.region_id(region)?;
         let is_active = |monitor: &RobotMonitor| monitor.region(region).is_some_and(|id| monitor.is_active(id));
-        Ok(self.monitors.monitors().iter().any(is_active))
+        Ok(py.detach(|| self.state().monitors.monitors().iter().any(is_active)))
     }
 
     /// Distance of a robot from a region at the last tick, in metres.
@@ -302,17 +347,33 @@ impl Monitor {
     /// Returns
     /// -------
     /// float
-    ///     0 inside; infinite beyond `limit_m`, and for a region that is off or not the robot's.
+    ///     0 inside; infinite beyond `limit_m`, and for a region that is off or does not guard against the robot; NaN if the last
+    ///     tick did not measure the robot: there was none, or a fault.
     #[pyo3(signature = (robot, region, limit_m=10.0))]
-    fn distance(&self, robot: &str, region: &str, limit_m: f64) -> PyResult<f64> {
+    fn distance(&self, py: Python<'_>, robot: &str, region: &str, limit_m: f64) -> PyResult<f64> {
+        if limit_m.is_nan() || limit_m < 0.0 {
+            return Err(Fault::Argument(format!("`limit_m` is {limit_m}\n  write: metres, 0 or more")).into());
+        }
         let (robot, _) = (self.robot_id(robot)?, self.region_id(region)?);
-        let monitor = &self.monitors.monitors()[robot.0];
-        let found = monitor.region(region).and_then(|id| monitor.distance(id, limit_m));
-        Ok(found.unwrap_or(f64::INFINITY))
+        Ok(py.detach(|| {
+            let state = self.state();
+            if !state.measured[robot.0] {
+                return f64::NAN;
+            }
+            let monitor = &state.monitors.monitors()[robot.0];
+            let found = monitor.region(region).and_then(|id| monitor.distance(id, limit_m));
+            found.unwrap_or(f64::INFINITY)
+        }))
+    }
+
+    #[expect(clippy::unused_self, reason = "a method of Python")]
+    fn __reduce__(&self) -> PyResult<()> {
+        let text = "a monitor has a state, so it is not copied\n  write: Monitor(cell) in each process";
+        Err(Fault::Argument(text.into()).into())
     }
 
     fn __repr__(&self) -> String {
-        format!("Monitor({:?}: {} robots, {} regions)", self.cell().name, self.robots().len(), self.regions().len())
+        format!("Monitor({:?}: {} robots, {} regions)", self.cell.name, self.robots().len(), self.regions().len())
     }
 }
 

@@ -36,6 +36,8 @@ use crate::rows::{map_rows, shaped};
 pub struct Robot {
     pub(crate) model: Arc<Model>,
     path: PathBuf,
+    /// The same from the root of the file system, for its page: by then the present folder may be another.
+    drawn: (PathBuf, InspectOptions),
     srdf: Option<PathBuf>,
     unit: Option<String>,
     joints_file: Option<PathBuf>,
@@ -76,9 +78,19 @@ fn read(path: PathBuf, srdf: Option<PathBuf>, unit: Option<String>, joints: Opti
     let options =
         LoadOptions { srdf: srdf.clone(), unit: known.transpose()?, joints: joints.clone(), ..LoadOptions::default() };
     let loaded = files::load(&path, &options)?;
+    let absolute = |file: &PathBuf| std::path::absolute(file).unwrap_or_else(|_| file.clone());
+    let (srdf_file, joints_file) = (srdf.as_ref().map(absolute), joints.as_ref().map(absolute));
+    let inspected = InspectOptions {
+        srdf: srdf_file,
+        unit: options.unit,
+        joints: joints_file,
+        brief: true,
+        ..InspectOptions::default()
+    };
+    let drawn = (absolute(&path), inspected);
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
     let joint_names = joint_names(&loaded.robot.chain);
-    Ok(Robot { model: Arc::new(loaded.robot), path, srdf, unit, joints_file: joints, warnings, joint_names })
+    Ok(Robot { model: Arc::new(loaded.robot), path, drawn, srdf, unit, joints_file: joints, warnings, joint_names })
 }
 
 #[pymethods]
@@ -261,14 +273,8 @@ impl Robot {
 
     /// The robot as an HTML page that needs no network: four views with its joints.
     fn page(&self, py: Python<'_>) -> PyResult<String> {
-        let options = InspectOptions {
-            srdf: self.srdf.clone(),
-            unit: self.unit.as_deref().and_then(LengthUnit::parse),
-            joints: self.joints_file.clone(),
-            brief: true,
-            ..InspectOptions::default()
-        };
-        Ok(py.detach(|| page::of_robot(&self.path, &options))?)
+        let (path, options) = &self.drawn;
+        Ok(py.detach(|| page::of_robot(path, options))?)
     }
 
     fn _repr_html_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
