@@ -28,21 +28,28 @@ pub struct Artifact {
 /// # Errors
 /// If something does not compile; cargo has printed why.
 pub fn compile(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<Vec<Artifact>, String> {
-    artifacts(&messages(root, args, "json-render-diagnostics", env)?)
+    let (messages, result) = messages(root, args, "json-render-diagnostics", env)?;
+    result.and_then(|()| artifacts(&messages))
 }
 
 /// Compiles the same, prints the warnings, and counts them. Cargo keeps them, so nothing is compiled twice.
 ///
 /// # Errors
-/// If something does not compile; cargo has printed why.
+/// If something does not compile; why has been printed too.
 pub fn warnings(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<usize, String> {
-    let found = warnings_of(&messages(root, args, "json", env)?)?;
+    let (messages, result) = messages(root, args, "json", env)?;
+    let found = warnings_of(&messages)?;
     print!("{}", found.iter().map(String::as_str).collect::<String>());
-    Ok(found.len())
+    result.map(|()| found.len())
 }
 
-/// Returns cargo's messages, one JSON object per line.
-fn messages(root: &Path, args: &[&str], format: &str, env: &[(&str, &str)]) -> Result<String, String> {
+/// Calls cargo. Returns its messages, one JSON object per line, and whether everything compiles.
+fn messages(
+    root: &Path,
+    args: &[&str],
+    format: &str,
+    env: &[(&str, &str)],
+) -> Result<(String, Result<(), String>), String> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     let args: Vec<&str> = args.iter().copied().chain(["--message-format", format]).collect();
     let line = args.join(" ");
@@ -50,10 +57,8 @@ fn messages(root: &Path, args: &[&str], format: &str, env: &[(&str, &str)]) -> R
     let mut command = command(&cargo);
     command.args(&args).envs(env.iter().copied()).current_dir(root).stderr(Stdio::inherit());
     let output = command.output().map_err(|e| format!("cannot start cargo: {e}"))?;
-    if !output.status.success() {
-        return Err(format!("`cargo {line}` does not compile"));
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    let result = if output.status.success() { Ok(()) } else { Err(format!("`cargo {line}` does not compile")) };
+    Ok((String::from_utf8_lossy(&output.stdout).into_owned(), result))
 }
 
 /// Compiles a bench as `cargo bench` does, and returns its executable.
@@ -84,15 +89,17 @@ fn artifacts(messages: &str) -> Result<Vec<Artifact>, String> {
     Ok(found)
 }
 
-/// Reads the warnings and errors from cargo's messages. A crate that is compiled twice, for tests and for others, tells
+/// Reads the warnings and errors of the compiler from cargo's messages. A crate that is compiled twice, for tests and for others, tells
 /// some of them twice.
 fn warnings_of(messages: &str) -> Result<BTreeSet<String>, String> {
     let mut found = BTreeSet::new();
     for message in objects(messages) {
         let message = message?;
         let text = message["message"]["rendered"].as_str().unwrap_or_default();
-        // The summary of a crate, "3 warnings emitted", has no code.
-        if message["reason"] == "compiler-message" && !message["message"]["code"].is_null() {
+        // Summaries of a crate, "3 warnings emitted", have neither a code nor a place; a wrong syntax has no code.
+        let is_summary =
+            message["message"]["code"].is_null() && message["message"]["spans"].as_array().is_none_or(Vec::is_empty);
+        if message["reason"] == "compiler-message" && !is_summary {
             found.insert(text.to_owned());
         }
     }

@@ -28,7 +28,10 @@ pub fn run(root: &Path, manylinux: bool) -> Result<(), String> {
     if manylinux {
         words.extend(["--zig", "--compatibility", MANYLINUX]);
     }
-    shell::run(&root.join("python"), &builder.to_string_lossy(), &words, &[])?;
+    // Zig is a package of the same environment, and is searched for on the search path.
+    let folder = builder.parent().unwrap_or(root).display();
+    let search_path = format!("{folder}:{}", std::env::var("PATH").unwrap_or_default());
+    shell::run(&root.join("python"), &builder.to_string_lossy(), &words, &[("PATH", &search_path)])?;
     let wheel = only_wheel(&wheels)?;
     let bytes = std::fs::metadata(&wheel).map_err(|e| format!("{}: {e}", wheel.display()))?.len();
     println!("{}: {:.1} MB", wheel.display(), bytes as f64 / 1e6);

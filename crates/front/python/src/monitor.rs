@@ -24,8 +24,8 @@ type EventNames = Vec<(Option<String>, &'static str)>;
 ///
 /// A host ticks it once per period of its controller, with the state of every robot; robots that share regions grant them to
 /// each other. Belts, moving objects and pose files of the cell are where they are at the time of the tick. A state that is
-/// NaN, late, or jumps is no exception: the answer is override 0 and the reason. Objects that programs grip, and tools that they
-/// exchange, stay as at the start.
+/// NaN or jumps, or a time that goes back, is no exception: the answer is override 0 and the reason. Objects that programs grip, and
+/// tools that they exchange, stay as at the start.
 ///
 /// Parameters
 /// ----------
