@@ -105,7 +105,7 @@ def test_an_evaluation_goes_on_until_it_begins_anew(monitor: er.Monitor) -> None
     monitor.reset()
     parts = [monitor.evaluate(times_s[part], q[part]).speed_override for part in (slice(0, 250), slice(250, 600))]
     assert (np.vstack(parts) == whole).all()
-    # A row that is no number is found before the first tick.
+    # A row with NaN is found before the first tick.
     monitor.reset()
     with pytest.raises(er.ArrayError, match="row 599"):
         monitor.evaluate(times_s, np.vstack([q[:-1], [[np.nan]]]))

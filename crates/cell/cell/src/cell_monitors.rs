@@ -34,7 +34,7 @@ pub struct CellInstant<'a> {
 pub struct RobotTick {
     /// The report.
     pub report: TickReport,
-    /// The events, those of the tick before the first one included.
+    /// The events. The first tick includes the events of the tick before it.
     pub events: Vec<Event>,
 }
 
@@ -124,7 +124,7 @@ impl CellMonitors {
         self.must_publish =
             !at.qd.is_empty() && ticks.iter().any(|t| matches!(t.report.reason, OverrideReason::Fault(_)));
         if at.qd.is_empty() {
-            // Twice the same place is no rest: velocities are still not known.
+            // Both ticks have the same positions, which does not mean that the robots rest: velocities are still not known.
             self.monitors.iter_mut().for_each(Monitor::forget_position);
         }
         let is_told = |event: &Event| !matches!(event.kind, EventKind::Fault | EventKind::Recovered);

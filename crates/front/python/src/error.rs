@@ -18,6 +18,15 @@ pub enum Fault {
     Python(PyErr),
 }
 
+impl Fault {
+    /// There is no robot of this name, but these.
+    pub fn no_robot(name: &str, known: &[&str]) -> Self {
+        let known =
+            if known.is_empty() { "a robot in the cell file".into() } else { format!("one of {}", known.join(", ")) };
+        Self::Argument(format!("no robot is called \"{name}\"\n  write: {known}"))
+    }
+}
+
 impl From<Diagnostic> for Fault {
     fn from(diagnostic: Diagnostic) -> Self {
         Self::File(diagnostic)

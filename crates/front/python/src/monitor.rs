@@ -124,9 +124,7 @@ impl Monitor {
     fn robot_id(&self, name: &str) -> Result<RobotId, Fault> {
         let robots = &self.cell.robots;
         let found = robots.iter().position(|r| r.name == name && !r.is_mechanism());
-        found.map(RobotId).ok_or_else(|| {
-            Fault::Argument(format!("no robot is called \"{name}\"\n  write: one of {}", self.robots().join(", ")))
-        })
+        found.map(RobotId).ok_or_else(|| Fault::no_robot(name, &self.robots()))
     }
 
     /// Values of an optional row.
@@ -274,7 +272,7 @@ impl Monitor {
     /// times_s
     ///     `(N,)`: the times of the rows, growing.
     /// q, qd, intent
-    ///     `(N, dof)`: as in `tick`. Rows must be finite: they are arrays, and no measurements that fail.
+    ///     `(N, dof)`: as in `tick`, but every number must be finite.
     /// programmed_override
     ///     The override of programs and operators, 0 to 1.
     ///

@@ -46,9 +46,8 @@ impl RunRecord {
 
     /// Every tick of a robot, as an `elbowroom.results.Trace`.
     fn trace<'py>(&self, py: Python<'py>, robot: &str) -> PyResult<Bound<'py, PyAny>> {
-        let track = self.recording.robots.iter().find(|track| track.name == robot).ok_or_else(|| {
-            Fault::Argument(format!("no robot is called \"{robot}\"\n  write: one of {}", self.robots().join(", ")))
-        })?;
+        let track = self.recording.robots.iter().find(|track| track.name == robot);
+        let track = track.ok_or_else(|| Fault::no_robot(robot, &self.robots()))?;
         let column = |value: &dyn Fn(&Sample) -> f64| PyArray1::from_vec(py, track.samples.iter().map(value).collect());
         let count = track.samples.len();
         let q: Vec<f64> = track.samples.iter().flat_map(|sample| sample.q.iter().copied()).collect();
