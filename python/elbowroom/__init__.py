@@ -8,10 +8,11 @@ Joint values are `(N, dof)` arrays of float64, radians for joints that turn and 
 state. Lengths are metres, times seconds. For a cell the robots stand side by side in the order of the file.
 """
 
-from elbowroom._elbowroom import Cell, Checker, Monitor, ReachQuery, Robot, __version__, plan
+from elbowroom._elbowroom import Cell, Checker, Monitor, Planner, ReachQuery, Robot, __version__
 from elbowroom.errors import ArgumentError, ArrayError, Error, FileError
 from elbowroom.pages import save, show
 from elbowroom.results import Edges, JointMap, Overrides, Path, Reach, Run, Tick, Trace, Witness
+from elbowroom.scene import Scene
 
 __all__ = [
     "ArgumentError",
@@ -25,15 +26,16 @@ __all__ = [
     "Monitor",
     "Overrides",
     "Path",
+    "Planner",
     "Reach",
     "ReachQuery",
     "Robot",
     "Run",
+    "Scene",
     "Tick",
     "Trace",
     "Witness",
     "__version__",
-    "plan",
     "save",
     "show",
 ]

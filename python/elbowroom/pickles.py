@@ -19,16 +19,15 @@ _Reduced = tuple[Callable[..., Any], tuple[Any, ...]]
 
 def checksum(path: Path) -> str:
     """Return the SHA-256 of a file in hex."""
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    try:
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    except OSError as error:
+        hint = "the same file at the same path wherever the object is pickled or loaded; a Scene has one once it is saved"
+        raise FileError(f"{path}: cannot be read: {error}\n  write: {hint}", str(path), None, str(error), hint) from error
 
 
 def _same(path: Path, expected: str) -> None:
-    try:
-        found = checksum(path)
-    except OSError as error:
-        hint = "the same file at the same path on every machine"
-        raise FileError(f"{path}: cannot be read: {error}\n  write: {hint}", str(path), None, str(error), hint) from error
-    if found != expected:
+    if checksum(path) != expected:
         message = "has changed since the object was pickled"
         hint = "load it again, and pickle the new object"
         raise FileError(f"{path}: {message}\n  write: {hint}", str(path), None, message, hint)
@@ -50,6 +49,12 @@ def cell(path: Path, expected: str) -> _elbowroom.Cell:
 def checker(source: Any, level: str, between: str | None, threads: int | None) -> _elbowroom.Checker:
     """Make a pickled checker."""
     return _elbowroom.Checker(source, level=level, between=between, threads=threads)
+
+
+def files_of_robot(model: _elbowroom.Robot) -> tuple[Any, ...]:
+    """Return the file of a robot, its SRDF, its unit of length and the file of its joints; `None` where it has none."""
+    files: tuple[Any, ...] = model.__reduce__()[1][0]
+    return files
 
 
 def reduced_robot(files: tuple[Any, ...]) -> _Reduced:
@@ -77,3 +82,13 @@ def reach(source: Any, robot: str | None, turns: int, threads: int | None) -> _e
 def reduced_reach(source: Any, robot: str | None, turns: int, threads: int | None) -> _Reduced:
     """Return what a pickle of a query of reach has."""
     return reach, (source, robot, turns, threads)
+
+
+def planner(source: Any, robot: str, kind: str, clearance_m: float) -> _elbowroom.Planner:
+    """Make a pickled planner."""
+    return _elbowroom.Planner(source, robot, planner=kind, clearance_m=clearance_m)
+
+
+def reduced_planner(source: Any, robot: str, kind: str, clearance_m: float) -> _Reduced:
+    """Return what a pickle of a planner has."""
+    return planner, (source, robot, kind, clearance_m)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path as _File
 from typing import TYPE_CHECKING, Any
@@ -11,9 +12,10 @@ import numpy.typing as npt
 
 from elbowroom.errors import ArgumentError
 from elbowroom.pages import frame
+from elbowroom.poses import PoseLike
 
 if TYPE_CHECKING:
-    from elbowroom._elbowroom import PathRecord, RunRecord
+    from elbowroom._elbowroom import MapRecord, PathRecord, RunRecord
 
 __all__ = ["Edges", "JointMap", "Overrides", "Path", "Reach", "Run", "Tick", "Trace", "Witness"]
 
@@ -107,7 +109,7 @@ class Path:
     def page(self) -> str:
         """Return the robot on its path as an HTML page that needs no network; not of a copy."""
         if self._record is None:
-            raise ArgumentError("a copied path has no cell, so it has no page\n  write: the path that `plan` returned")
+            raise ArgumentError("a copied path has no cell, so it has no page\n  write: the path that `Planner.plan` returned")
         return self._record.page()
 
     def _repr_html_(self) -> str:
@@ -301,7 +303,8 @@ class JointMap:
     joints: list[str]
     centers: list[npt.NDArray[np.float64]]
     blocked_by: dict[str, int]
-    _cells: npt.NDArray[np.bool_]
+    _cells: npt.NDArray[np.bool_] = field(repr=False)
+    _record: MapRecord | None = field(repr=False)
 
     @classmethod
     def _of(
@@ -312,14 +315,58 @@ class JointMap:
         cells: npt.NDArray[np.uint8],
         shape: list[int],
         blocked_by: list[tuple[str, int]],
+        record: MapRecord,
     ) -> JointMap:
         blocked = cells.reshape(shape).view(np.bool_)
         blocked.flags.writeable = False
-        return cls(robot, joints, centers, dict(blocked_by), blocked)
+        return cls(robot, joints, centers, dict(blocked_by), blocked, record)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave the prepared robot out of copies and pickles."""
+        return self.__dict__ | {"_record": None}
+
+    def _prepared(self) -> MapRecord:
+        if self._record is None:
+            raise ArgumentError("a copied map has cells, but no robot\n  write: the map that `Cell.map` returned")
+        return self._record
 
     def to_numpy(self) -> npt.NDArray[np.bool_]:
         """Return the cells: true if the robot may touch an object there; an axis per joint of `joints`."""
         return self._cells
+
+    def is_blocked(self, q: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+        """Return which states are in blocked cells, or outside of the map; not of a copy.
+
+        Parameters
+        ----------
+        q
+            `(N, axes)`: values of the joints of the map, rad or m.
+
+        Returns
+        -------
+        ndarray
+            `(N,)` bool.
+        """
+        return self._prepared().are_blocked(q)
+
+    def moved(
+        self, objects: Mapping[str, PoseLike] | None = None, *, spheres: npt.NDArray[np.float64] | None = None
+    ) -> JointMap:
+        """Return the map with objects at other places; only their cells are computed. Not of a copy.
+
+        Parameters
+        ----------
+        objects
+            The pose of each object in the world, by its name; the others stay.
+        spheres
+            `(K, 4)`: what a sensor sees besides: x, y, z and radius, metres, in the world. They replace earlier ones; without them
+            these stay.
+
+        Returns
+        -------
+        JointMap
+        """
+        return self._prepared().moved(dict(objects or {}), spheres)
 
     @property
     def blocked(self) -> int:

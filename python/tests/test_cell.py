@@ -60,43 +60,44 @@ def test_a_map_is_the_file_of_the_command(command: Path, tmp_path: Path) -> None
     hits = q[er.Checker(er.Cell.load(cell)).collides(q)]
     at = [np.abs(hits[:, [axis]] - found.centers[axis]).argmin(axis=1) for axis in range(2)]
     assert len(hits) > 20 and found.to_numpy()[at[0], at[1]].all()
+    # Every cell's centre is answered as the array has it.
+    grid = np.stack(np.meshgrid(*found.centers, indexing="ij"), axis=-1).reshape(-1, 2)
+    assert (found.is_blocked(grid) == found.to_numpy().ravel()).all()
+    assert found.is_blocked(np.array([[3.2, 0.0], [0.0, -3.2]])).all()
+    with pytest.raises(er.ArrayError, match="row 0"):
+        found.is_blocked(np.array([[np.nan, 0.0]]))
     with pytest.raises(er.ArgumentError, match="misses cells"):
         er.Cell.load(cell).map(model="seeds")
     with pytest.raises(er.ArgumentError, match="`model`"):
         er.Cell.load(cell).map(model="clay")
 
 
-def test_a_path_is_free_and_is_the_same_with_the_same_seed(exchange: Path) -> None:
-    cell = er.Cell.load(exchange)
-    q0, q1 = [1.0, 0.9, 0.2, 0, 0.8, 0], [-1.0, 0.9, 0.2, 0, 0.8, 0]
-    path = er.plan(cell, "left", q0, np.array(q1))
-    assert path and path.reason is None and path.robot == "left" and len(path.joints) == 6
-    assert (path.q[0] == q0).all() and (path.q[-1] == q1).all()
-    assert path.times_s[0] == 0.0 and (np.diff(path.times_s) > 0).all() and path.duration_s == path.times_s[-1]
-    checker = er.Checker(cell)
-    q = np.tile(checker.start, (len(path.q), 1))
-    q[:, :6] = path.q
-    assert not checker.collides(q).any()
-    assert (er.plan(cell, "left", q0, q1).q == path.q).all()
+def test_a_map_follows_objects_that_move(tmp_path: Path) -> None:
+    def map_of(at: str) -> er.JointMap:
+        cell = tmp_path / "cell.toml"
+        cell.write_text(MAP_CELL.replace("at = [600, 0, 0]", at))
+        return er.Cell.load(cell).map()
 
-
-@pytest.mark.parametrize(
-    ("change", "error", "text"),
-    [
-        ({"q0": [0.0] * 5}, er.ArrayError, "`q0` is"),
-        ({"q1": [0.0] * 5 + [np.nan]}, er.ArrayError, "`q1` is"),
-        ({"q1": "home"}, er.ArrayError, "`q1` is not a row of numbers"),
-        ({"robot": "nobody"}, er.FileError, "nobody"),
-        ({"q1": [9.0] * 6}, er.FileError, "limit"),
-        ({"time_limit_s": -1.0}, er.ArgumentError, "seconds above 0"),
-        ({"planner": "prm"}, er.ArgumentError, "rrt-connect"),
-        ({"clearance_m": np.nan}, er.Error, "clearance"),
-    ],
-)
-def test_what_cannot_be_planned_teaches(exchange: Path, change: dict[str, object], error: type, text: str) -> None:
-    words = {"robot": "left", "q0": [1.0, 0.9, 0.2, 0, 0.8, 0], "q1": [-1.0, 0.9, 0.2, 0, 0.8, 0], **change}
-    with pytest.raises(error, match=text):
-        er.plan(er.Cell.load(exchange), **words)  # type: ignore[arg-type]
+    first = map_of("at = [600, 0, 0]")
+    there = ([0.0, 0.55, 0.1], [0, 0, 0, 1])
+    second = first.moved({"ball": there})
+    assert (second.to_numpy() == map_of("at = [0, 550, 100]").to_numpy()).all()
+    assert (second.to_numpy() != first.to_numpy()).any() and second.blocked_by["ball"] == second.blocked
+    assert (second.moved({"ball": ([0.6, 0, 0], [0, 0, 0, 1])}).to_numpy() == first.to_numpy()).all()
+    # A sphere that a camera sees is as good as an object, until another picture comes.
+    seen = first.moved(spheres=np.array([[0.0, 0.55, 0.1, 0.1]]))
+    assert (seen.to_numpy() == (first.to_numpy() | second.to_numpy())).all()
+    assert (seen.moved({"ball": ([9.0, 0, 0], [0, 0, 0, 1])}).to_numpy() == second.to_numpy()).all()
+    assert (seen.moved(spheres=np.empty((0, 4))).to_numpy() == first.to_numpy()).all()
+    for wrong in ([[0.0, 0.0, 0.0, -0.1]], [[0.0, 0.0, np.nan, 0.1]], [[0.0, 0.0, 0.1]]):
+        with pytest.raises(er.ArrayError, match="`spheres`"):
+            first.moved(spheres=np.array(wrong))
+    with pytest.raises(er.ArgumentError, match="no object"):
+        first.moved({"bal": there})
+    copied = pickle.loads(pickle.dumps(first))
+    assert (copied.to_numpy() == first.to_numpy()).all() and copied.joints == first.joints
+    with pytest.raises(er.ArgumentError, match="a copied map"):
+        copied.moved({"ball": there})
 
 
 def test_a_cell_pickles_and_a_broken_one_teaches(exchange: Path, tmp_path: Path) -> None:

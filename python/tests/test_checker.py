@@ -230,3 +230,23 @@ def test_motions_are_those_of_the_command_and_free_between_the_states(command: P
         checker.edges(q[:3], q[:2])
     with pytest.raises(er.ArrayError, match="`q1`: row 1"):
         checker.edges(q[:2], np.where([[False], [True]], np.nan, q[:2]))
+
+
+def test_progress_is_told_on_standard_error(rx60b: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    checker = er.Checker(er.Robot.load(rx60b))
+    q = np.tile(checker.start, (3000, 1))
+    quiet = checker.distance(q)
+    assert capsys.readouterr().err == ""
+    assert (checker.distance(q, progress=True) == quiet).all()
+    told = capsys.readouterr()
+    assert "3,000 of 3,000 rows" in told.err and told.err.endswith("\n") and told.out == ""
+    checker.edges(q[:300], q[:300], progress=True)
+    assert "300 of 300 motions" in capsys.readouterr().err
+    cell = er.Cell.load(ROOT / "examples/exchange/cell.toml")
+    cell.map("left", progress=True)
+    assert "objects" in capsys.readouterr().err
+    er.ReachQuery(cell, "left").evaluate(np.array([[0.5, 0.1, 0.3, 0, 0, -1.0]]), progress=True)
+    assert "1 of 1 targets" in capsys.readouterr().err
+    monitor = er.Monitor(cell)
+    monitor.evaluate(np.arange(300) * 0.002, np.zeros((300, 12)), progress=True)
+    assert "300 of 300 ticks" in capsys.readouterr().err

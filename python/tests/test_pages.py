@@ -41,7 +41,7 @@ def test_a_robot_shows_itself_from_another_folder(rx60b: Path, tmp_path: Path, m
 
 
 def test_a_copied_path_has_its_arrays_and_what_has_no_page_is_told(exchange: Path, tmp_path: Path) -> None:
-    path = er.plan(er.Cell.load(exchange), "left", [1.0, 0.9, 0.2, 0, 0.8, 0], [0.9, 0.9, 0.2, 0, 0.8, 0])
+    path = er.Planner(er.Cell.load(exchange), "left").plan([1.0, 0.9, 0.2, 0, 0.8, 0], [0.9, 0.9, 0.2, 0, 0.8, 0])
     copied = pickle.loads(pickle.dumps(path))
     assert (copied.q == path.q).all() and copied.found
     with pytest.raises(er.ArgumentError, match="a copied path has no cell"):
@@ -53,7 +53,7 @@ def test_a_copied_path_has_its_arrays_and_what_has_no_page_is_told(exchange: Pat
 def test_a_cell_and_a_path_show_the_scene(exchange: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cell = er.Cell.load(exchange)
     check(cell, cell.robots)
-    path = er.plan(cell, "left", [1.0, 0.9, 0.2, 0, 0.8, 0], [-1.0, 0.9, 0.2, 0, 0.8, 0])
+    path = er.Planner(cell, "left").plan([1.0, 0.9, 0.2, 0, 0.8, 0], [-1.0, 0.9, 0.2, 0, 0.8, 0])
     check(path, cell.robots)
     # The time of the path is that of the run in which the robot plays it.
     told = re.search(r"left[^.]*?finished[^.]*?([0-9.]+) s", path.page())
@@ -69,5 +69,5 @@ def test_a_cell_and_a_path_show_the_scene(exchange: Path, tmp_path: Path, monkey
 def test_a_cell_whose_arm_a_person_guides_has_a_page_at_once() -> None:
     cell = er.Cell.load(ROOT / "examples/guided/cell.toml")
     check(cell, cell.robots)
-    nothing = er.plan(er.Cell.load(ROOT / "examples/exchange/cell.toml"), "left", [1.0, 0.9, 0.2, 0, 0.8, 0], [1.0, 0.9, 0.2, 0, 0.8, 0])
-    check(nothing, ["left"])
+    planner = er.Planner(er.Cell.load(ROOT / "examples/exchange/cell.toml"), "left")
+    check(planner.plan([1.0, 0.9, 0.2, 0, 0.8, 0], [1.0, 0.9, 0.2, 0, 0.8, 0]), ["left"])

@@ -6,6 +6,7 @@ import pickle
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 import elbowroom as er
@@ -38,7 +39,11 @@ def test_poses_are_rigid_and_chunks_do_not_matter(rx60b: Path) -> None:
 def test_the_jacobian_is_the_derivative(rx60b: Path) -> None:
     robot = er.Robot.load(rx60b)
     q, step, point = states(robot, 20), 1e-6, [0.1, -0.2, 0.05]
-    place = lambda q: (robot.fk(q, "link_4") @ [*point, 1.0])[:, :3]
+
+    def place(q: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        found: npt.NDArray[np.float64] = (robot.fk(q, "link_4") @ np.array([*point, 1.0]))[:, :3]
+        return found
+
     jacobian = robot.jacobian(q, "link_4", point)
     assert jacobian.shape == (20, 6, 6)
     for joint in range(6):

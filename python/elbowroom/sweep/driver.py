@@ -10,7 +10,7 @@ from pathlib import Path
 from elbowroom.errors import ArgumentError, Error
 from elbowroom.sweep import executors, parts
 from elbowroom.sweep.parts import Part
-from elbowroom.sweep.progress import Progress
+from elbowroom.progress import Progress
 from elbowroom.sweep.result import MANIFEST, Result, finish
 from elbowroom.sweep.shard import Job, remember
 from elbowroom.sweep.task import Task, digest

@@ -5,6 +5,7 @@ mod common;
 mod cover_cache;
 mod inspected_robots;
 mod map;
+mod path_query;
 mod plan;
 mod plan_on_map;
 mod problems;

@@ -4,15 +4,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use elbowroom::cell::Cell as Model;
-use elbowroom::cspace::GridAxis;
-use elbowroom::query::map::{self, CellMap, MapModel, MapProgress, MapRequest};
 use elbowroom::sim::RunOptions;
-use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::error::Fault;
-use crate::page;
 use crate::run::run;
+use crate::{joint_map, page};
 
 /// A cell file and what it describes: robots, objects, regions, programs.
 ///
@@ -102,21 +99,21 @@ impl Cell {
     ///     The robot; optional if there is only one, or only one `[map.ROBOT]`.
     /// model
     ///     Model of the objects: `"exact"`, `"slices"`, `"sphere"`, `"spheres=8"` or `"box"`. No model misses a blocked cell.
+    /// progress
+    ///     Whether to say on standard error how much is done.
     ///
     /// Returns
     /// -------
     /// JointMap
-    #[pyo3(signature = (robot=None, *, model="exact"))]
-    fn map<'py>(&self, py: Python<'py>, robot: Option<String>, model: &str) -> PyResult<Bound<'py, PyAny>> {
-        let model: MapModel = model.parse().map_err(|e| Fault::Argument(format!("`model`: {e}")))?;
-        if !model.is_conservative() {
-            let text = "`model` is \"seeds\", which misses cells\n  write: exact, slices, sphere, spheres=N or box";
-            return Err(Fault::Argument(text.into()).into());
-        }
-        let request = MapRequest { robot, model, ..MapRequest::default() };
-        let found =
-            py.detach(|| map::map_with(&self.model, &request, &|_: MapProgress<'_>| ()).map_err(Fault::from))?;
-        joint_map(py, found)
+    #[pyo3(signature = (robot=None, *, model="exact", progress=false))]
+    fn map<'py>(
+        &self,
+        py: Python<'py>,
+        robot: Option<String>,
+        model: &str,
+        progress: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        joint_map::map(py, &self.model, robot, model, progress)
     }
 
     /// The cell at its start as an HTML page that needs no network: the scene in 3-D.
@@ -135,20 +132,4 @@ impl Cell {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         py.import("elbowroom.pickles")?.getattr("reduced_cell")?.call1((&self.path,))
     }
-}
-
-/// A map as an object of the package.
-fn joint_map(py: Python<'_>, map: CellMap) -> PyResult<Bound<'_, PyAny>> {
-    let Some(dense) = map.dense else {
-        let text = "the map has too many cells for an array\n  write: a larger `step` in [map.ROBOT] of the cell file";
-        return Err(Fault::Argument(text.into()).into());
-    };
-    let joints: Vec<&str> = map.axes.iter().map(GridAxis::joint).collect();
-    let centers = |axis: &GridAxis| (0..axis.count()).map(|cell| axis.center(cell)).collect();
-    let centers: Vec<_> = map.axes.iter().map(|axis| PyArray1::from_vec(py, centers(axis))).collect();
-    let blocked = PyArray1::from_slice(py, dense.cells());
-    let shape = dense.shape().to_vec();
-    let by_object: Vec<(&str, u64)> = map.obstacles.iter().map(|o| (o.name.as_str(), o.blocks.blocked())).collect();
-    let make = py.import("elbowroom.results")?.getattr("JointMap")?.getattr("_of")?;
-    make.call1((&map.robot, joints, centers, blocked, shape, by_object))
 }

@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 use crate::arrays::{CHUNK, Rows};
 use crate::cell::Cell;
 use crate::error::Fault;
+use crate::progress::Progress;
 use crate::robot::{Robot, joint_names};
 use crate::rows::shaped;
 
@@ -104,20 +105,23 @@ impl Checker {
         &self,
         q: &Bound<'_, PyAny>,
         kind: QueryKind,
+        progress: bool,
         mut take: impl FnMut(&QueryRow) + Send,
     ) -> Result<usize, Fault> {
         let (py, model, query) = (q.py(), &*self.model, self.query(kind));
         let rows = Rows::of(q, "q", &model.columns)?;
+        let progress = Progress::new(py, progress, rows.len(), "rows")?;
         for begin in (0..rows.len()).step_by(CHUNK) {
             let states = QueryStates::of_rows(&model.query, rows.chunk(begin)?);
-            interruptible(py, |go_on| {
+            interruptible(py, &progress, |go_on| {
                 query::evaluate_query(&model.scene, &states, &query, &mut |rows| {
                     rows.iter().for_each(&mut take);
-                    go_on()
+                    go_on(rows.len())
                 })
                 .map(drop)
             })?;
         }
+        progress.end(py)?;
         Ok(rows.len())
     }
 
@@ -125,6 +129,7 @@ impl Checker {
     fn sweep(
         &self,
         (q0, q1): (&Bound<'_, PyAny>, &Bound<'_, PyAny>),
+        progress: bool,
         mut take: impl FnMut(&MotionRow) + Send,
     ) -> Result<(), Fault> {
         let (py, model, query) = (q0.py(), &*self.model, self.query(QueryKind::Time));
@@ -133,18 +138,19 @@ impl Checker {
             let text = format!("`q0` has {} rows, `q1` {}\n  write: as many ends as beginnings", from.len(), to.len());
             return Err(Fault::Array(text));
         }
+        let progress = Progress::new(py, progress, from.len(), "motions")?;
         for begin in (0..from.len()).step_by(CHUNK) {
             let states = |rows: &Rows| Ok::<_, Fault>(QueryStates::of_rows(&model.query, rows.chunk(begin)?));
             let (from, to) = (states(&from)?, states(&to)?);
-            interruptible(py, |go_on| {
+            interruptible(py, &progress, |go_on| {
                 query::evaluate_edges(&model.scene, &from, &to, &query, &mut |rows| {
                     rows.iter().for_each(&mut take);
-                    go_on()
+                    go_on(rows.len())
                 })
                 .map(drop)
             })?;
         }
-        Ok(())
+        Ok(progress.end(py)?)
     }
 
     fn name(&self, pair: Option<(GeometryId, GeometryId)>, side: usize) -> Option<String> {
@@ -152,16 +158,19 @@ impl Checker {
     }
 }
 
-/// Runs work while other threads of Python run; its argument says whether to go on, and no signal has arrived.
+/// Runs work while other threads of Python run; its argument takes how many rows are done, and says whether to go on, because
+/// no signal has arrived.
 fn interruptible(
     py: Python<'_>,
-    work: impl FnOnce(&mut (dyn FnMut() -> bool + Send)) -> Result<(), Diagnostic> + Send,
+    progress: &Progress,
+    work: impl FnOnce(&mut (dyn FnMut(usize) -> bool + Send)) -> Result<(), Diagnostic> + Send,
 ) -> Result<(), Fault> {
     let mut interrupted = None;
     py.detach(|| {
-        work(&mut || {
+        work(&mut |done| {
             // The signals of a process arrive at its main thread, which may be this one.
-            interrupted = Python::attach(signals).err();
+            let told = Python::attach(|py| progress.add(py, done).and_then(|()| signals(py)));
+            interrupted = told.err();
             interrupted.is_none()
         })
     })?;
@@ -169,7 +178,7 @@ fn interruptible(
 }
 
 /// Whether a signal, such as that of Ctrl-C, has become an exception.
-fn signals(py: Python<'_>) -> PyResult<()> {
+pub fn signals(py: Python<'_>) -> PyResult<()> {
     py.check_signals()
 }
 
@@ -242,14 +251,17 @@ impl Checker {
     /// ----------
     /// q
     ///     `(N, dof)` joint values in the order of `joints`.
+    /// progress
+    ///     Whether to say on standard error how much is done.
     ///
     /// Returns
     /// -------
     /// ndarray
     ///     `(N,)` bool.
-    fn collides<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    #[pyo3(signature = (q, *, progress=false))]
+    fn collides<'py>(&self, q: &Bound<'py, PyAny>, progress: bool) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let mut out = Vec::new();
-        self.answer(q, QueryKind::Collision, |row| out.push(row.collides))?;
+        self.answer(q, QueryKind::Collision, progress, |row| out.push(row.collides))?;
         Ok(PyArray1::from_vec(q.py(), out))
     }
 
@@ -259,14 +271,17 @@ impl Checker {
     /// ----------
     /// q
     ///     `(N, dof)` joint values in the order of `joints`.
+    /// progress
+    ///     Whether to say on standard error how much is done.
     ///
     /// Returns
     /// -------
     /// ndarray
     ///     `(N,)`, metres: 0 on contact, infinite if there is no pair.
-    fn distance<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    #[pyo3(signature = (q, *, progress=false))]
+    fn distance<'py>(&self, q: &Bound<'py, PyAny>, progress: bool) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let mut out = Vec::new();
-        self.answer(q, QueryKind::Distance, |row| out.push(metres(row)))?;
+        self.answer(q, QueryKind::Distance, progress, |row| out.push(metres(row)))?;
         Ok(PyArray1::from_vec(q.py(), out))
     }
 
@@ -278,12 +293,20 @@ impl Checker {
     ///     `(N, dof)` joint values in the order of `joints`.
     /// tolerance_m
     ///     The tolerance, metres.
+    /// progress
+    ///     Whether to say on standard error how much is done.
     ///
     /// Returns
     /// -------
     /// ndarray
     ///     `(N,)` bool.
-    fn within<'py>(&self, q: &Bound<'py, PyAny>, tolerance_m: f64) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    #[pyo3(signature = (q, tolerance_m, *, progress=false))]
+    fn within<'py>(
+        &self,
+        q: &Bound<'py, PyAny>,
+        tolerance_m: f64,
+        progress: bool,
+    ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         // Written so that NaN fails.
         if !(tolerance_m >= 0.0 && tolerance_m.is_finite()) {
             let text =
@@ -291,7 +314,7 @@ impl Checker {
             return Err(Fault::Argument(text).into());
         }
         let mut out = Vec::new();
-        self.answer(q, QueryKind::Tolerance(tolerance_m), |row| out.push(row.collides))?;
+        self.answer(q, QueryKind::Tolerance(tolerance_m), progress, |row| out.push(row.collides))?;
         Ok(PyArray1::from_vec(q.py(), out))
     }
 
@@ -301,14 +324,17 @@ impl Checker {
     /// ----------
     /// q
     ///     `(N, dof)` joint values in the order of `joints`.
+    /// progress
+    ///     Whether to say on standard error how much is done.
     ///
     /// Returns
     /// -------
     /// Witness
-    fn witness<'py>(&self, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    #[pyo3(signature = (q, *, progress=false))]
+    fn witness<'py>(&self, q: &Bound<'py, PyAny>, progress: bool) -> PyResult<Bound<'py, PyAny>> {
         let py = q.py();
         let (mut distances, mut points, mut names) = (Vec::new(), [Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
-        let count = self.answer(q, QueryKind::Distance, |row| {
+        let count = self.answer(q, QueryKind::Distance, progress, |row| {
             distances.push(metres(row));
             let witness = row.witness.map(|(a, b)| [a.to_array(), b.to_array()]);
             for side in 0..2 {
@@ -330,14 +356,22 @@ impl Checker {
     /// ----------
     /// q0, q1
     ///     `(N, dof)` joint values at the beginnings and at the ends, in the order of `joints`.
+    /// progress
+    ///     Whether to say on standard error how much is done.
     ///
     /// Returns
     /// -------
     /// Edges
-    fn edges<'py>(&self, q0: &Bound<'py, PyAny>, q1: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    #[pyo3(signature = (q0, q1, *, progress=false))]
+    fn edges<'py>(
+        &self,
+        q0: &Bound<'py, PyAny>,
+        q1: &Bound<'py, PyAny>,
+        progress: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
         let py = q0.py();
         let (mut shares, mut certain, mut names) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
-        self.sweep((q0, q1), |row| {
+        self.sweep((q0, q1), progress, |row| {
             shares.push(row.hit.map_or(1.0, |hit| hit.time));
             certain.push(row.hit.is_none_or(|hit| hit.certain));
             for (side, names) in names.iter_mut().enumerate() {

@@ -11,9 +11,12 @@ mod arrays;
 mod cell;
 mod checker;
 mod error;
+mod joint_map;
 mod monitor;
 mod page;
-mod paths;
+mod places;
+mod planner;
+mod progress;
 mod reach;
 mod robot;
 mod rows;
@@ -31,6 +34,7 @@ fn _elbowroom(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<monitor::Monitor>()?;
     module.add_class::<reach::ReachQuery>()?;
     module.add_class::<run::RunRecord>()?;
-    module.add_class::<paths::PathRecord>()?;
-    module.add_function(wrap_pyfunction!(paths::plan, module)?)
+    module.add_class::<joint_map::MapRecord>()?;
+    module.add_class::<planner::Planner>()?;
+    module.add_class::<planner::PathRecord>()
 }

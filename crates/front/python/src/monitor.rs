@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use crate::arrays::Rows;
 use crate::cell::Cell;
 use crate::error::Fault;
+use crate::progress::Progress;
 use crate::rows::shaped;
 
 /// Rows between two looks at the signals: the slowest tick of the examples takes an eighth of a millisecond.
@@ -275,11 +276,13 @@ impl Monitor {
     ///     `(N, dof)`: as in `tick`, but every number must be finite.
     /// programmed_override
     ///     The override of programs and operators, 0 to 1.
+    /// progress
+    ///     Whether to say on standard error how much is done.
     ///
     /// Returns
     /// -------
     /// Overrides
-    #[pyo3(signature = (times_s, q, qd=None, *, intent=None, programmed_override=1.0))]
+    #[pyo3(signature = (times_s, q, qd=None, *, intent=None, programmed_override=1.0, progress=false))]
     fn evaluate<'py>(
         &self,
         times_s: &Bound<'py, PyAny>,
@@ -287,6 +290,7 @@ impl Monitor {
         qd: Option<&Bound<'py, PyAny>>,
         intent: Option<&Bound<'py, PyAny>>,
         programmed_override: f64,
+        progress: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = q.py();
         let times_s = numbers(times_s, "times_s", &|| "a time for each row, in seconds".into())?;
@@ -301,11 +305,15 @@ impl Monitor {
         let (q, qd, intent) = (rows.all()?, all(qd.as_ref())?, all(intent.as_ref())?);
         let motion = Motion { times_s: &times_s, q: &q, qd: &qd, intent: &intent, programmed_override };
         let mut answers = Answers::default();
+        let progress = Progress::new(py, progress, rows.len(), "ticks")?;
         for begin in (0..rows.len()).step_by(BETWEEN_SIGNALS) {
             let part = begin..rows.len().min(begin + BETWEEN_SIGNALS);
+            let count = part.len();
             py.detach(|| answers.add(&mut self.state(), &motion, part));
+            progress.add(py, count)?;
             py.check_signals()?;
         }
+        progress.end(py)?;
         let robots: Vec<String> = self.robots().into_iter().map(str::to_owned).collect();
         let overrides = shaped(&PyArray1::from_vec(py, answers.overrides), [rows.len(), robots.len()])?;
         let make = py.import("elbowroom.results")?.getattr("Overrides")?.getattr("_of")?;

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use crate::arrays::Rows;
 use crate::cell::Cell;
 use crate::error::Fault;
+use crate::progress::Progress;
 use crate::robot::{Robot, joint_names, pose_of};
 use crate::rows::shaped;
 
@@ -120,19 +121,23 @@ impl ReachQuery {
     ///     direction of the tool's z axis; every turn about it will do.
     /// base
     ///     The pose of the root link in the world: a 4x4 array, `(xyz, quaternion xyzw)`, or `(xyz, rotation)`; default: `base`.
+    /// progress
+    ///     Whether to say on standard error how much is done.
     ///
     /// Returns
     /// -------
     /// Reach
-    #[pyo3(signature = (targets, base=None))]
+    #[pyo3(signature = (targets, base=None, *, progress=false))]
     fn evaluate<'py>(
         &self,
         targets: &Bound<'py, PyAny>,
         base: Option<&Bound<'py, PyAny>>,
+        progress: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let py = targets.py();
         let base = base.map_or_else(|| Ok(self.query.base_in_world()), pose_of)?;
         let targets = read(targets)?;
+        let progress = Progress::new(py, progress, targets.len(), "targets")?;
         let (mut solutions, mut free, mut q) = (Vec::new(), Vec::new(), Vec::new());
         for chunk in targets.chunks(CHUNK) {
             let found = py.detach(|| self.query.evaluate(&base, chunk, self.threads)).map_err(Fault::from)?;
@@ -142,8 +147,10 @@ impl ReachQuery {
                 free.push(u16::try_from(reach.free).unwrap_or(u16::MAX));
                 q.extend(reach.q.unwrap_or_else(|| vec![f64::NAN; self.joints.len()]));
             }
+            progress.add(py, chunk.len())?;
             py.check_signals()?;
         }
+        progress.end(py)?;
         let q = shaped(&PyArray1::from_vec(py, q), [targets.len(), self.joints.len()])?;
         let (solutions, free) = (PyArray1::from_vec(py, solutions), PyArray1::from_vec(py, free));
         py.import("elbowroom.results")?.getattr("Reach")?.call1((solutions, free, q))

@@ -35,6 +35,7 @@ mod cell_blocks;
 mod cell_group_graph;
 mod cell_path;
 mod cover_rrt_connect;
+mod deadline;
 pub mod example;
 mod graph_components;
 mod grid_path;
@@ -57,6 +58,7 @@ mod time_parametrization;
 mod timed_path;
 
 pub use cover_rrt_connect::{AnytimePath, CoverModel, CoverObstacles, CoverRrtConnect, LinearMove};
+pub use deadline::Interrupt;
 pub use grid_path::{GridPath, GridPlannerError, GridPlannerSetting, PathEnd};
 pub use grid_planner::{GridPlanner, GridPlannerSettings};
 pub use joint_path::JointPath;

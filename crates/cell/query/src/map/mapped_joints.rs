@@ -4,7 +4,7 @@ use elbowroom_cell::{Cell, CellRobot};
 use elbowroom_cspace::{Grid, GridAxis};
 use elbowroom_formats::Diagnostic;
 
-use super::{axes, select_map};
+use super::map_axes::{axes, select_map};
 
 /// Largest difference to the start of a joint that is not in the map, rad or m.
 const HELD: f64 = 1e-9;

@@ -11,21 +11,21 @@ use elbowroom_scene::{Checker, CheckerOptions, Selection, SweepOptions};
 
 use super::answer::PathAnswer;
 use super::map_planner::{MapPlanner, MapPlannerError};
-use super::path_query::Query;
 use super::request_validation::planner_error;
+use super::search::Search;
 use crate::map::mapped_joints::MappedJoints;
 
 /// A path for one robot on its map.
-pub(super) struct MapQuery<'q> {
+pub(super) struct MapSearch<'q> {
     pub cell: &'q Cell,
     pub id: RobotId,
     pub mapped: &'q MappedJoints,
-    pub query: Query<'q>,
+    pub search: Search<'q>,
     /// Names of the regions that the path avoids.
     pub regions: &'q [String],
 }
 
-impl MapQuery<'_> {
+impl MapSearch<'_> {
     /// Plans a path to the first goal that is reached, or states why the first goal is not reached.
     ///
     /// # Errors
@@ -33,7 +33,7 @@ impl MapQuery<'_> {
     /// collision or beyond limits.
     pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, Diagnostic> {
         let robot = &self.cell.robots[self.id.0];
-        let Query { scene, state, settings, limits, period_s, .. } = &self.query;
+        let Search { scene, state, settings, limits, period_s, .. } = &self.search;
         let goals = self.goals(robot)?;
         let goals = self.free_goals(goals, &mut exact)?;
         let begin = Instant::now();
@@ -62,9 +62,9 @@ impl MapQuery<'_> {
     /// The goals at which the other joints have their start values.
     fn goals(&self, robot: &CellRobot) -> Result<Vec<&Vec<f64>>, Diagnostic> {
         let mapped = self.mapped;
-        let moved = |goal: &[f64]| mapped.moved_otherwise(self.query.state.q(self.id), goal);
-        let goals: Vec<&Vec<f64>> = self.query.goals.iter().filter(|goal| moved(goal).is_none()).collect();
-        let Some(other) = self.query.goals.first().and_then(|goal| moved(goal)).filter(|_| goals.is_empty()) else {
+        let moved = |goal: &[f64]| mapped.moved_otherwise(self.search.state.q(self.id), goal);
+        let goals: Vec<&Vec<f64>> = self.search.goals.iter().filter(|goal| moved(goal).is_none()).collect();
+        let Some(other) = self.search.goals.first().and_then(|goal| moved(goal)).filter(|_| goals.is_empty()) else {
             return Ok(goals);
         };
         let names = robot.joint_names();
@@ -84,7 +84,7 @@ impl MapQuery<'_> {
         let mut refused = None;
         for goal in goals {
             // With a single waypoint, only the ends are tested.
-            match exact.first_unproven_segment(self.query.state, std::slice::from_ref(goal), self.query.settings) {
+            match exact.first_unproven_segment(self.search.state, std::slice::from_ref(goal), self.search.settings) {
                 Ok(_) => free.push(goal),
                 Err(e) => refused = refused.or(Some(e)),
             }
@@ -117,7 +117,7 @@ impl MapQuery<'_> {
 
     /// The obstacle that a path comes too near to: something in the scene, otherwise perhaps a region.
     fn what_is_near(&self, waypoints: &[Vec<f64>]) -> String {
-        let Query { scene, state, settings, .. } = &self.query;
+        let Search { scene, state, settings, .. } = &self.search;
         let mut checker = Checker::new(scene, CheckerOptions::default());
         let options = SweepOptions { clearance_m: settings.clearance_m, ..SweepOptions::default() };
         let mut pairs = checker.between(Selection::Robot(self.id), Selection::All);

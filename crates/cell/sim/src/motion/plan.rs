@@ -1,6 +1,5 @@
 //! Planning of a program: every move is computed before the simulation starts.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use elbowroom_cell::trajectory::{Playback, motion_bounds, recording_warnings, volume_motion_bounds};
@@ -257,8 +256,6 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         PlannedMove { to, speed, planner, keep }: PlannedMove<'_>,
     ) -> Result<Playback, Diagnostic> {
         let carried = self.parts.carried().map_err(|e| self.part_error(index, step, e))?;
-        let cell = self.cell_now();
-        let volumes = cell.volumes_holding(self.id, &carried);
         let request = PathRequest {
             robot: Some(self.robot.name.clone()),
             from: Some(self.q.clone()),
@@ -273,23 +270,17 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
             carried,
             ..PathRequest::default()
         };
-        let answer = elbowroom_query::plan::plan(&cell, &request)
-            .map_err(|e| self.error(index, step, &e.message).hint(e.hint.unwrap_or_default()))?;
+        let answer = self.paths.ask(self.id, &self.robot, |query| {
+            let volumes = query.cell().volumes_holding(self.id, &request.carried);
+            Ok((query.plan(&request)?, volumes))
+        });
+        let (answer, volumes) =
+            answer.map_err(|e| self.error(index, step, &e.message).hint(e.hint.unwrap_or_default()))?;
         let Some(timed) = answer.timed else {
             let why = answer.reason.unwrap_or_default();
             return Err(self.error(index, step, &why).hint("another target, or a joint move over a free point"));
         };
         Ok(Playback::new(timed.trajectory, &volume_motion_bounds(&self.robot.robot.chain, &volumes)))
-    }
-
-    /// The cell with the tools as they are now.
-    fn cell_now(&self) -> Cow<'a, Cell> {
-        if self.robot.payload.tools.is_empty() {
-            return Cow::Borrowed(self.cell);
-        }
-        let mut cell = self.cell.clone();
-        cell.robots[self.id.0] = self.robot.clone();
-        Cow::Owned(cell)
     }
 
     fn part_error(&self, index: usize, step: &ProgramStep, e: PartError) -> Diagnostic {

@@ -1,13 +1,15 @@
 //! The paths of a cell's planned moves, each computed once.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::fmt;
 use std::sync::Arc;
 
 use elbowroom_cell::trajectory::Playback;
-use elbowroom_cell::{Cell, ProgramBody, StepAction};
+use elbowroom_cell::{Cell, CellRobot, ProgramBody, StepAction};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::LinkId;
+use elbowroom_query::plan::PathQuery;
 use elbowroom_robot::RobotId;
 
 use super::planned_parts::PlannedParts;
@@ -39,11 +41,18 @@ use super::planned_parts::PlannedParts;
 pub struct PlannedPaths<'a> {
     cell: &'a Cell,
     known: RefCell<Vec<(PathOrigin<'a>, SearchedPath)>>,
+    queries: RefCell<Vec<ToolingQuery<'a>>>,
     progress: Box<dyn Fn(PathSearch) + 'a>,
 }
 
 /// A path, or the error of its search.
 type SearchedPath = Result<Arc<Playback>, Diagnostic>;
+
+/// The robot that changes its tools, its flange, and whether each tool is mounted.
+type Tooling = (RobotId, LinkId, Vec<bool>);
+
+/// The query of the cell in which a robot has these tools; `None`: of a robot that does not change its tools.
+type ToolingQuery<'a> = (Option<Tooling>, PathQuery<Cow<'a, Cell>>);
 
 /// A search that starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,7 +81,7 @@ pub(super) struct PathOrigin<'a> {
 impl<'a> PlannedPaths<'a> {
     /// Creates an empty set of paths.
     pub fn new(cell: &'a Cell) -> Self {
-        Self { cell, known: RefCell::default(), progress: Box::new(|_| ()) }
+        Self { cell, known: RefCell::default(), queries: RefCell::default(), progress: Box::new(|_| ()) }
     }
 
     /// Calls `progress` before each search.
@@ -101,6 +110,29 @@ impl<'a> PlannedPaths<'a> {
         let path = search().map(Arc::new);
         self.known.borrow_mut().push((origin, path.clone()));
         path
+    }
+
+    /// Asks the query of the cell in which a robot has the tools that it has now.
+    pub(super) fn ask<T>(
+        &self,
+        id: RobotId,
+        robot: &CellRobot,
+        ask: impl FnOnce(&mut PathQuery<Cow<'a, Cell>>) -> Result<T, Diagnostic>,
+    ) -> Result<T, Diagnostic> {
+        let tools = &robot.payload.tools;
+        let tooling = (!tools.is_empty()).then(|| (id, robot.flange, tools.iter().map(|t| t.mounted).collect()));
+        let mut queries = self.queries.borrow_mut();
+        if let Some((_, query)) = queries.iter_mut().find(|(known, _)| *known == tooling) {
+            return ask(query);
+        }
+        let mut cell = Cow::Borrowed(self.cell);
+        if tooling.is_some() {
+            cell.to_mut().robots[id.0] = robot.clone();
+        }
+        let mut query = PathQuery::new(cell)?;
+        let answer = ask(&mut query);
+        queries.push((tooling, query));
+        answer
     }
 }
 

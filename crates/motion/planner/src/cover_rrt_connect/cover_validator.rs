@@ -8,6 +8,7 @@ use elbowroom_validity::{NotCertain, Validity, ValidityChecker};
 
 use super::cover_model::{CoverModel, CoverObstacles};
 use super::disconnection_proof::{Projection, are_disconnected};
+use crate::deadline::{Deadline, Interrupt};
 use crate::rrt_connect::{JointRange, MotionValidator, RrtConnectError, SceneValidator};
 
 /// Number of questions per reading of the clock, which costs as much as a short edge.
@@ -25,7 +26,7 @@ pub(super) struct CoverValidator<'m> {
     model: &'m CoverModel,
     obstacles: &'m CoverObstacles,
     robot: RobotId,
-    deadline: Instant,
+    deadline: Deadline,
     max_states: u64,
     /// Number of blocks before the present query.
     blocks_before: u64,
@@ -37,19 +38,19 @@ pub(super) struct CoverValidator<'m> {
 impl<'m> CoverValidator<'m> {
     pub fn new(model: &'m CoverModel, obstacles: &'m CoverObstacles, robot: RobotId) -> Self {
         let checker = obstacles.checker(model);
-        let (deadline, pairs) = (Instant::now(), Vec::new());
+        let (deadline, pairs) = (Deadline::new(Instant::now(), Interrupt::default()), Vec::new());
         Self { checker, model, obstacles, robot, deadline, max_states: 0, blocks_before: 0, questions: 0, pairs }
     }
 
     /// Begins a query.
-    pub fn begin(&mut self, deadline: Instant, max_states: u64) {
+    pub fn begin(&mut self, deadline: Deadline, max_states: u64) {
         self.deadline = deadline;
         self.max_states = max_states;
         self.blocks_before = self.checker.blocks();
     }
 
     /// Continues a query until another time.
-    pub fn extend_deadline(&mut self, deadline: Instant) {
+    pub fn extend_deadline(&mut self, deadline: Deadline) {
         self.deadline = deadline;
     }
 
@@ -60,7 +61,7 @@ impl<'m> CoverValidator<'m> {
         ranges: &[JointRange],
         ends: [&[f64]; 2],
         projection: &Projection,
-        deadline: Instant,
+        deadline: &Deadline,
     ) -> bool {
         let before = self.checker.blocks();
         let answer = are_disconnected(&mut self.checker, ranges, ends, projection, deadline);
@@ -113,7 +114,7 @@ impl MotionValidator for CoverValidator<'_> {
     fn is_exhausted(&mut self) -> bool {
         self.questions += 1;
         self.states_checked() > self.max_states
-            || (self.questions.is_multiple_of(QUESTIONS_PER_CLOCK_READING) && Instant::now() >= self.deadline)
+            || (self.questions.is_multiple_of(QUESTIONS_PER_CLOCK_READING) && self.deadline.is_over())
     }
 
     fn longest_edge(&self) -> f64 {

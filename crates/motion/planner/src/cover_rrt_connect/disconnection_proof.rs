@@ -6,10 +6,9 @@
 //! around them; a blocked cell also blocks the edge or corner.) If blocked cells enclose the cells around the start,
 //! and the goal is not among the enclosed cells, no path exists.
 
-use std::time::Instant;
-
 use elbowroom_validity::ValidityChecker;
 
+use crate::deadline::Deadline;
 use crate::rrt_connect::JointRange;
 
 /// Largest number of cells of a grid.
@@ -96,7 +95,7 @@ pub(super) fn are_disconnected(
     ranges: &[JointRange],
     [from, to]: [&[f64]; 2],
     projection: &Projection,
-    deadline: Instant,
+    deadline: &Deadline,
 ) -> bool {
     let axes: Option<Vec<Axis>> =
         projection.joints.iter().map(|&j| Axis::new(j, ranges.get(j)?, projection.step)).collect();
@@ -113,7 +112,7 @@ pub(super) fn are_disconnected(
 
 impl Flood<'_, '_> {
     /// Extends both ends alternately until one cannot be extended (true) or they meet (false).
-    fn encloses_an_end(&mut self, from: &[f64], to: &[f64], deadline: Instant) -> bool {
+    fn encloses_an_end(&mut self, from: &[f64], to: &[f64], deadline: &Deadline) -> bool {
         let ends = [self.cell_of(from), self.cell_of(to)];
         if ends[0] == ends[1] {
             return false;
@@ -127,7 +126,7 @@ impl Flood<'_, '_> {
             if fronts[side].is_empty() {
                 return true;
             }
-            if Instant::now() >= deadline || !self.extend(side as u8, &mut fronts[side], &mut candidates) {
+            if deadline.is_over() || !self.extend(side as u8, &mut fronts[side], &mut candidates) {
                 return false;
             }
         }

@@ -10,6 +10,7 @@ use super::cover_validator::CoverValidator;
 use super::disconnection_proof::Projection;
 use super::query_ends::QueryEnds;
 use super::separating_value::SeparatingValue;
+use crate::deadline::Deadline;
 use crate::interpolation::{length, path_length};
 use crate::joint_path::JointPath;
 use crate::rrt_connect::{
@@ -150,14 +151,14 @@ impl<'m> CoverRrtConnect<'m> {
     ) -> Result<Vec<Vec<f64>>, RrtConnectError> {
         let region = self.exact.validator.bounds.sampling_region_of(ends.all());
         let mut sampler = RegionSampler::new(region, random);
-        let last_deadline = self.exact.validator.deadline;
-        self.covers.extend_deadline(last_deadline.min(begin + settings.time_limit.mul_f64(FIRST_SHARE)));
+        let last_deadline = self.exact.validator.deadline.clone();
+        self.covers.extend_deadline(last_deadline.no_later_than(begin + settings.time_limit.mul_f64(FIRST_SHARE)));
         let mut search = self.validator();
         let mut trees = TreeSearch::new(&mut search, ends.from(), ends.goals());
         let mut found = trees.run(&mut sampler);
         if found.is_none() {
             let proof_deadline = Instant::now() + settings.time_limit.mul_f64(PROOF_SHARE);
-            trees.validator.expect_connected(ends, proof_deadline.min(last_deadline))?;
+            trees.validator.expect_connected(ends, &last_deadline.no_later_than(proof_deadline))?;
             trees.validator.covers.extend_deadline(last_deadline);
             found = trees.run(&mut sampler);
         }
@@ -168,7 +169,7 @@ impl<'m> CoverRrtConnect<'m> {
 
 impl ConstrainedValidator<'_, '_> {
     /// Returns an error if it is proven that no path leads from the start to any goal.
-    fn expect_connected(&mut self, ends: &QueryEnds, deadline: Instant) -> Result<(), RrtConnectError> {
+    fn expect_connected(&mut self, ends: &QueryEnds, deadline: &Deadline) -> Result<(), RrtConnectError> {
         let bounds = &self.exact.validator.bounds;
         let ranges = bounds.ranges();
         if ends.misses_goals() {
@@ -179,9 +180,8 @@ impl ConstrainedValidator<'_, '_> {
         let mut proof = None;
         for to in ends.goals() {
             let from = ends.from();
-            let value_deadline =
-                Instant::now() + deadline.saturating_duration_since(Instant::now()).mul_f64(VALUE_SHARE);
-            let of_value = separating.joint_between(from, to, value_deadline).map(|joint| vec![joint]);
+            let of_values = deadline.no_later_than(Instant::now() + deadline.left().mul_f64(VALUE_SHARE));
+            let of_value = separating.joint_between(from, to, &of_values).map(|joint| vec![joint]);
             let mut all = projections(bounds.dof()).into_iter();
             let joints = of_value.or_else(|| {
                 let found = all.find(|some| self.covers.are_disconnected(&ranges, [from, to], some, deadline));

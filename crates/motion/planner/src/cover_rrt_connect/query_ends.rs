@@ -137,7 +137,7 @@ impl ConstrainedValidator<'_, '_> {
             return Err(RrtConnectError::InvalidSetting { setting, value });
         }
         self.exact.begin(start, goal, settings)?;
-        self.covers.begin(self.exact.validator.deadline, settings.max_states);
+        self.covers.begin(self.exact.validator.deadline.clone(), settings.max_states);
         let bounds: &JointBounds = &self.exact.validator.bounds;
         let from = bounds.clamped_end(PathEnd::Start, start.q(self.exact.robot()))?;
         let to = bounds.clamped_end(PathEnd::Goal, goal)?;

@@ -6,8 +6,6 @@
 //! distance r from the axis of k, it also overlaps at every value of k that differs by less than d / r, because no
 //! point of an arc is farther from its first point than the arc is long.
 
-use std::time::Instant;
-
 use elbowroom_kinematics::{Chain, JointId, JointKind, LinkId};
 use elbowroom_proximity::{Shape, collides, project_point};
 use elbowroom_robot::{GeometryId, RobotId};
@@ -15,6 +13,7 @@ use elbowroom_scene::{PairState, Scene, SceneState};
 use elbowroom_spatial::{Aabb, Pose, Vec3};
 
 use super::inner_balls::{InnerBall, inner_balls};
+use crate::deadline::Deadline;
 use crate::rrt_connect::JointRange;
 
 /// Spacing of tried values, rad; for prismatic joints a tenth of this number in metres.
@@ -99,7 +98,7 @@ impl<'s> SeparatingValue<'s> {
     }
 
     /// Finds a joint with a proven value between two configurations. `None` proves nothing.
-    pub fn joint_between(&mut self, from: &[f64], to: &[f64], deadline: Instant) -> Option<usize> {
+    pub fn joint_between(&mut self, from: &[f64], to: &[f64], deadline: &Deadline) -> Option<usize> {
         (0..self.ranges.len()).find(|&joint| {
             let range = self.ranges[joint];
             let (a, b) = (from[joint], to[joint]);
@@ -109,13 +108,13 @@ impl<'s> SeparatingValue<'s> {
             is_bounded
                 && (1..count).any(|i| {
                     let value = a + (b - a) * i as f64 / count as f64;
-                    Instant::now() < deadline && self.separates(from, joint, value, deadline)
+                    !deadline.is_over() && self.separates(from, joint, value, deadline)
                 })
         })
     }
 
     /// Whether it is proven that every configuration with this value of a joint is in collision.
-    fn separates(&mut self, others: &[f64], joint: usize, value: f64, deadline: Instant) -> bool {
+    fn separates(&mut self, others: &[f64], joint: usize, value: f64, deadline: &Deadline) -> bool {
         let mut q = others.to_vec();
         q[joint] = value;
         (0..self.ranges.len()).filter(|&other| other != joint).any(|other| {
@@ -136,7 +135,7 @@ impl<'s> SeparatingValue<'s> {
         (0..self.pairs.len()).filter(|&p| follows(&self.pairs[p])).collect()
     }
 
-    fn collide_everywhere(&mut self, pairs: &[usize], q: &mut [f64], other: usize, deadline: Instant) -> bool {
+    fn collide_everywhere(&mut self, pairs: &[usize], q: &mut [f64], other: usize, deadline: &Deadline) -> bool {
         let Some((lower, upper)) = whole_range(&self.ranges[other]) else { return false };
         for probe in 0..PROBES {
             q[other] = lower + (upper - lower) * f64::from(probe) / f64::from(PROBES - 1);
@@ -147,7 +146,7 @@ impl<'s> SeparatingValue<'s> {
         let mut proven = lower;
         while proven <= upper {
             q[other] = proven;
-            if Instant::now() >= deadline || !self.set(q) {
+            if deadline.is_over() || !self.set(q) {
                 return false;
             }
             let advance = pairs.iter().map(|&pair| self.reach(pair, other)).fold(0.0, f64::max);

@@ -15,6 +15,7 @@ use super::scene_validator::SceneValidator;
 use super::settings::RrtConnectSettings;
 use super::shortcutting::Shortcutting;
 use super::tree_search::TreeSearch;
+use crate::deadline::{Deadline, Interrupt};
 use crate::grid_path::PathEnd;
 use crate::interpolation::path_length;
 use crate::joint_path::JointPath;
@@ -70,6 +71,13 @@ impl<'s> RrtConnect<'s> {
     #[must_use]
     pub fn with_constraint(mut self, constraint: impl PathConstraint + 's) -> Self {
         self.validator.constraint = Some(ConstraintChecker::new(constraint));
+        self
+    }
+
+    /// Lets another thread end the searches.
+    #[must_use]
+    pub fn with_interrupt(mut self, interrupt: Interrupt) -> Self {
+        self.validator.deadline = Deadline::new(Instant::now(), interrupt);
         self
     }
 
@@ -221,7 +229,7 @@ impl<'s> RrtConnect<'s> {
     }
 
     fn not_found(&self, [from, to]: &[Vec<f64>; 2], nodes: usize, settings: &RrtConnectSettings) -> RrtConnectError {
-        let left = self.validator.deadline.saturating_duration_since(Instant::now());
+        let left = self.validator.deadline.left();
         let seconds = settings.time_limit.min(MAX_TIME_LIMIT).saturating_sub(left).as_secs_f64();
         let states_checked = self.validator.states_checked;
         RrtConnectError::NotFound {

@@ -14,6 +14,7 @@ use super::joint_weights::joint_weights;
 use super::motion_validator::MotionValidator;
 use super::path_constraint::ConstraintChecker;
 use super::settings::RrtConnectSettings;
+use crate::deadline::{Deadline, Interrupt};
 use crate::interpolation::lerp;
 
 /// Number of questions whether the search must end that count as a checked configuration.
@@ -40,7 +41,7 @@ pub(crate) struct SceneValidator<'s> {
     pub states_checked: u64,
     /// Number of questions whether the search must end.
     questions: u64,
-    pub deadline: Instant,
+    pub deadline: Deadline,
     pub max_states: u64,
 }
 
@@ -68,7 +69,7 @@ impl<'s> SceneValidator<'s> {
             check_resolution: f64::INFINITY,
             states_checked: 0,
             questions: 0,
-            deadline: Instant::now(),
+            deadline: Deadline::new(Instant::now(), Interrupt::default()),
             max_states: u64::MAX,
         })
     }
@@ -87,7 +88,7 @@ impl<'s> SceneValidator<'s> {
         state.check_q(self.scene, self.robot, goal)?;
         self.state.clone_from(state);
         (self.states_checked, self.questions) = (0, 0);
-        self.deadline = deadline;
+        self.deadline = self.deadline.until(deadline);
         self.max_states = settings.max_states;
         self.edge_length = settings.edge_length;
         self.check_resolution = settings.check_resolution;
@@ -248,7 +249,7 @@ impl MotionValidator for SceneValidator<'_> {
         // A search that is stuck may draw samples without checking any configuration.
         self.questions += 1;
         let rounds = self.questions / QUESTIONS_PER_STATE;
-        self.states_checked.max(rounds) >= self.max_states || Instant::now() >= self.deadline
+        self.states_checked.max(rounds) >= self.max_states || self.deadline.is_over()
     }
 
     fn longest_edge(&self) -> f64 {

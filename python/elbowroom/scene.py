@@ -1,0 +1,313 @@
+"""Scenes put together in Python: robots and objects at their places, as a cell or a cell file."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from elbowroom import poses
+from elbowroom._elbowroom import Cell, Robot
+from elbowroom.errors import ArgumentError, ArrayError, FileError
+from elbowroom.pickles import files_of_robot
+from elbowroom.poses import PoseLike
+
+__all__ = ["MeshLike", "Scene"]
+
+#: A mesh file; an object with `vertices` and `faces`, such as a `trimesh.Trimesh`; or `(vertices, faces)`. Metres.
+MeshLike: TypeAlias = Any
+
+
+class Scene:
+    """Robots and objects at their places, without a file.
+
+    `cell` makes a `Cell` of it, for checkers, planners, maps and runs; `save` writes the cell file, which regions and programs can be
+    added to. Every table of the cell file can be set here too. Lengths are metres and angles radians.
+
+    Parameters
+    ----------
+    name
+        Name of the cell.
+
+    Examples
+    --------
+    >>> import numpy as np, elbowroom as er
+    >>> scene = er.Scene()
+    >>> scene.add_robot("arm", "examples/models/rx60b/rx60b.urdf")
+    >>> scene.add_box("table", [0.6, 0.6, 0.1], ([0.5, 0.0, 0.1], [0, 0, 0, 1]))
+    >>> er.Checker(scene.cell(), between="arm,table").distance(np.zeros((1, 6))).round(3).tolist()
+    [0.06]
+    >>> scene.move("table", ([1.5, 0.0, 0.1], [0, 0, 0, 1]))
+    >>> er.Checker(scene.cell(), between="arm,table").distance(np.zeros((1, 6))).round(3).tolist()
+    [1.06]
+    """
+
+    def __init__(self, name: str = "scene") -> None:
+        """Begin an empty scene."""
+        self.name = name
+        self._tables: dict[str, dict[str, dict[str, Any]]] = {}
+
+    def add_robot(
+        self, name: str, robot: Robot | str | os.PathLike[str], base: PoseLike | None = None, **keys: Any
+    ) -> None:
+        """Add a robot.
+
+        Parameters
+        ----------
+        name
+            Its name in the scene.
+        robot
+            A `Robot`, or a file that `Robot.load` reads.
+        base
+            The pose of its root link in the world.
+        keys
+            Further keys of `[robot.NAME]` in a cell file, such as `start=[0.0, 0.5, …]` or `flange="tool0"`.
+        """
+        model, srdf, unit, joints = files_of_robot(robot) if isinstance(robot, Robot) else (Path(robot).resolve(),) + 3 * (None,)
+        given = {"model": model, "srdf": srdf, "unit": unit, "joints": joints}
+        table = {key: value for key, value in given.items() if value is not None}
+        if base is not None:
+            table["base"] = _pose(base)
+        self.add("robot", name, **table | keys)
+
+    def add_box(self, name: str, size_m: npt.ArrayLike, pose: PoseLike | None = None) -> None:
+        """Add a box about its pose; `size_m` has the lengths of its edges."""
+        self._object(name, pose, shape="box", size=_numbers("size_m", size_m, 3))
+
+    def add_sphere(self, name: str, radius_m: float, center_m: npt.ArrayLike) -> None:
+        """Add a sphere about a point."""
+        self._object(name, None, shape="sphere", radius=radius_m, at=_numbers("center_m", center_m, 3))
+
+    def add_cylinder(self, name: str, radius_m: float, height_m: float, pose: PoseLike | None = None) -> None:
+        """Add a cylinder along z about its pose."""
+        self._object(name, pose, shape="cylinder", radius=radius_m, height=height_m)
+
+    def add_capsule(self, name: str, radius_m: float, height_m: float, pose: PoseLike | None = None) -> None:
+        """Add a capsule along z about its pose; its height is without the caps."""
+        self._object(name, pose, shape="capsule", radius=radius_m, height=height_m)
+
+    def add_floor(self, name: str = "floor", height_m: float = 0.0) -> None:
+        """Add everything below a height."""
+        self._object(name, None, shape="plane", at=[0.0, 0.0, height_m])
+
+    def add_mesh(self, name: str, mesh: MeshLike, pose: PoseLike | None = None) -> None:
+        """Add a mesh.
+
+        Parameters
+        ----------
+        name
+            Its name in the scene.
+        mesh
+            A mesh file; an object with `vertices` and `faces`, such as a `trimesh.Trimesh`; or `(vertices, faces)`: arrays `(V, 3)` in
+            metres and `(F, 3)` of indices.
+        pose
+            The pose of its frame in the world.
+
+        Raises
+        ------
+        ArrayError
+            If `vertices` or `faces` are no such arrays.
+        """
+        if isinstance(mesh, str | os.PathLike):
+            self._object(name, pose, shape="mesh", mesh=Path(mesh).resolve())
+            return
+        if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+            mesh = (mesh.vertices, mesh.faces)
+        if not (isinstance(mesh, tuple) and len(mesh) == 2):
+            raise ArgumentError(f"a {type(mesh).__name__} is no mesh\n  write: a file, a trimesh.Trimesh, or (vertices, faces)")
+        found = _Mesh(*mesh)
+        self._object(name, pose, shape="mesh", mesh=found)
+
+    def add(self, table: str, name: str, /, **keys: Any) -> None:
+        """Add a table of the cell file, such as `add("region", "zone", shape="box", size=[1, 1, 1], warning=0.3)`.
+
+        Parameters
+        ----------
+        table, name
+            The table is `[TABLE.NAME]`; one of this name is replaced.
+        keys
+            Its keys: numbers in metres, radians and seconds, text, true and false, lists, dicts.
+        """
+        if not name:
+            raise ArgumentError(f"a {table} without a name\n  write: add({table!r}, \"name\", …)")
+        self._tables.setdefault(table, {})[name] = dict(keys)
+
+    def move(self, name: str, pose: PoseLike) -> None:
+        """Move an object, or the base of a robot, to a pose in the world."""
+        objects, robots = self._tables.get("object", {}), self._tables.get("robot", {})
+        if name in objects:
+            placed = {key: value for key, value in objects[name].items() if key not in ("at", "rpy", "quaternion")}
+            objects[name] = placed | _pose(pose)
+        elif name in robots:
+            robots[name]["base"] = _pose(pose)
+        else:
+            self._unknown(name)
+
+    def remove(self, name: str) -> None:
+        """Remove an object or a robot."""
+        for table in ("object", "robot"):
+            if self._tables.get(table, {}).pop(name, None) is not None:
+                return
+        self._unknown(name)
+
+    def cell(self) -> Cell:
+        """Return the scene as a cell.
+
+        It is not changed by what is added later. It has no file, so it cannot be pickled; `save` returns one that can.
+
+        Raises
+        ------
+        FileError
+            What is wrong with a table, and what to write instead.
+        """
+        with tempfile.TemporaryDirectory(prefix="elbowroom-") as folder:
+            path = Path(folder).resolve() / "scene.toml"
+            try:
+                return self.save(path)
+            except FileError as error:
+                if error.file != str(path) or error.line is None:
+                    raise
+                line = path.read_text(encoding="utf-8").splitlines()[error.line - 1]
+                text = f"scene, `{line}`: {error.message}" + (f"\n  write: {error.hint}" if error.hint else "")
+                raise FileError(text, "scene", None, error.message, error.hint) from None
+
+    def save(self, file: str | os.PathLike[str]) -> Cell:
+        """Write the cell file, with a file beside it for each mesh that has none, and return the cell."""
+        path = Path(file).resolve()
+        path.write_text(self._text(path), encoding="utf-8")
+        return Cell.load(path)
+
+    def page(self) -> str:
+        """Return the scene as an HTML page that needs no network."""
+        return self.cell().page()
+
+    def _repr_html_(self) -> str:
+        return self.cell()._repr_html_()
+
+    def __repr__(self) -> str:
+        """Say how much the scene has."""
+        robots, objects = (len(self._tables.get(table, {})) for table in ("robot", "object"))
+        return f"Scene({self.name!r}: {robots} robots, {objects} objects)"
+
+    def _object(self, name: str, pose: PoseLike | None, **keys: Any) -> None:
+        self.add("object", name, **keys | ({} if pose is None else _pose(pose)))
+
+    def _unknown(self, name: str) -> None:
+        known = [*self._tables.get("object", {}), *self._tables.get("robot", {})]
+        raise ArgumentError(f'the scene has no "{name}"\n  write: {", ".join(known) or "a scene with an object"}')
+
+    def _text(self, path: Path) -> str:
+        """Return the cell file, and write its meshes."""
+        writer = _Writer(path)
+        lines = ["version = 1", f"name = {_text(self.name)}", 'units = { length = "m", angle = "rad" }', ""]
+        for table, named in self._tables.items():
+            for name, keys in named.items():
+                lines.append(f"[{table}.{_key(name)}]")
+                lines += [f"{_key(key)} = {writer.value(value, name)}" for key, value in keys.items()]
+                lines.append("")
+        return "\n".join(lines)
+
+
+class _Mesh:
+    """Triangles in memory."""
+
+    def __init__(self, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> None:
+        points, corners = _array("vertices", vertices, np.float64), _array("faces", faces, np.int64)
+        if not np.isfinite(points).all():
+            raise ArrayError("`vertices` has values that are not finite\n  write: finite numbers, metres")
+        if corners.size and not (0 <= corners.min() and corners.max() < len(points)):
+            raise ArrayError(f"`faces` has indices from {corners.min()} to {corners.max()}\n  write: 0 to {len(points) - 1}")
+        self._vertices, self._faces = points.tolist(), (corners + 1).tolist()
+
+    def write(self, file: Path) -> None:
+        """Write an OBJ file, whose numbers read back to the same bits."""
+        with file.open("w", encoding="ascii") as out:
+            out.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in self._vertices)
+            out.writelines(f"f {a} {b} {c}\n" for a, b, c in self._faces)
+
+
+def _array(name: str, values: npt.ArrayLike, kind: type) -> npt.NDArray[Any]:
+    try:
+        found = np.asarray(values)
+    except ValueError as error:
+        raise ArrayError(f"`{name}`: {error}\n  write: an array of shape (N, 3)") from error
+    number = np.integer if kind is np.int64 else np.number
+    if found.ndim != 2 or found.shape[1] != 3 or not np.issubdtype(found.dtype, number) or np.iscomplexobj(found):
+        what = "whole numbers" if kind is np.int64 else "numbers"
+        raise ArrayError(f"`{name}` has the shape {found.shape} and the type {found.dtype}\n  write: {what} of shape (N, 3)")
+    return found.astype(kind)
+
+
+def _numbers(name: str, values: npt.ArrayLike, count: int) -> list[float]:
+    try:
+        found = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ArrayError(f"`{name}`: {error}\n  write: {count} numbers, metres") from error
+    if found.shape != (count,) or not np.isfinite(found).all():
+        raise ArrayError(f"`{name}` is {values!r}\n  write: {count} finite numbers, metres")
+    numbers: list[float] = found.tolist()
+    return numbers
+
+
+def _pose(pose: PoseLike) -> dict[str, Any]:
+    """Return the keys of a pose."""
+    x, y, z, *quaternion = poses.row(np.array(poses.matrix(pose))).tolist()
+    return {"at": [x, y, z], "quaternion": quaternion}
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _text(name)
+
+
+def _text(text: str) -> str:
+    # Strings of JSON are strings of TOML, but for the character DEL.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+class _Writer:
+    """Values of TOML for a cell file; other files are relative to it."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._meshes: dict[str, _Mesh] = {}
+
+    def value(self, value: Any, name: str) -> str:
+        """Return a value of a table of this name."""
+        if isinstance(value, _Mesh):
+            return _text(self._mesh(value, name))
+        if isinstance(value, os.PathLike):
+            return _text(self._relative(Path(value)))
+        if isinstance(value, str):
+            return _text(value)
+        if isinstance(value, bool | np.bool_):
+            return "true" if value else "false"
+        if isinstance(value, int | np.integer):
+            return str(int(value))
+        if isinstance(value, float | np.floating):
+            return repr(float(value))
+        if isinstance(value, Mapping):
+            return "{ " + ", ".join(f"{_key(key)} = {self.value(of, name)}" for key, of in value.items()) + " }"
+        if isinstance(value, Sequence | np.ndarray):
+            return "[" + ", ".join(self.value(of, name) for of in value) + "]"
+        raise ArgumentError(f"a {type(value).__name__} has no place in a cell file\n  write: numbers, text, lists or dicts")
+
+    def _mesh(self, mesh: _Mesh, name: str) -> str:
+        stem = wanted = f"{self._path.stem}.{re.sub(r'[^A-Za-z0-9_-]', '_', name)}"
+        # Some file systems do not tell upper from lower case.
+        while self._meshes.setdefault(stem.lower(), mesh) is not mesh:
+            stem = f"{wanted}_{len(self._meshes)}"
+        mesh.write(self._path.with_name(f"{stem}.obj"))
+        return f"{stem}.obj"
+
+    def _relative(self, file: Path) -> str:
+        try:
+            return Path(os.path.relpath(file, self._path.parent)).as_posix()
+        except ValueError:  # On another drive.
+            return file.as_posix()

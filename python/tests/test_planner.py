@@ -1,0 +1,149 @@
+"""Paths: free, the same from the same seed, around objects that have moved."""
+
+from __future__ import annotations
+
+import pickle
+import signal
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import elbowroom as er
+
+START, GOAL = [1.0, 0.9, 0.2, 0, 0.8, 0], [-1.0, 0.9, 0.2, 0, 0.8, 0]
+
+
+def free(cell: er.Cell, path: er.Path) -> bool:
+    """Whether nothing touches along a path of the first robot of a cell."""
+    checker = er.Checker(cell)
+    q = np.tile(checker.start, (len(path.q), 1))
+    q[:, : len(path.joints)] = path.q
+    return not checker.collides(q).any()
+
+
+def test_a_path_is_free_and_is_the_same_with_the_same_seed(exchange: Path) -> None:
+    cell = er.Cell.load(exchange)
+    planner = er.Planner(cell, "left")
+    path = planner.plan(START, np.array(GOAL))
+    assert path and path.reason is None and path.robot == planner.robot == "left" and path.joints == planner.joints
+    assert (path.q[0] == START).all() and (path.q[-1] == GOAL).all()
+    assert path.times_s[0] == 0.0 and (np.diff(path.times_s) > 0).all() and path.duration_s == path.times_s[-1]
+    assert free(cell, path)
+    # A planner that has answered other requests answers as a new one, and as a copied one.
+    assert planner.plan(GOAL, START) and planner.plan(START, [0.5, 0.9, 0.2, 0, 0.8, 0], seed=7)
+    for other in (planner, er.Planner(cell, "left"), pickle.loads(pickle.dumps(planner))):
+        assert (other.plan(START, GOAL).q == path.q).all()
+    slow = planner.plan(START, GOAL, speed=0.5)
+    assert slow.duration_s > 1.3 * path.duration_s and (slow.waypoints == path.waypoints).all()
+    assert planner.plan(START, GOAL, period_s=0.1).times_s[1] == pytest.approx(0.1)
+
+
+def test_a_path_leads_around_an_object_that_has_moved() -> None:
+    scene = er.Scene()
+    arm = {"a": 0.4, "min": -2.9, "max": 2.9, "speed": 1.5}
+    link = {"capsule": {"from": [-0.4, 0, 0], "to": [0, 0, 0], "radius": 0.04}}
+    scene.add("robot", "arm", dh=[arm, arm], links=[[], link])
+    scene.add_sphere("ball", 0.1, [0, 3, 0])
+    cell = scene.cell()
+    planner = er.Planner(cell)
+    straight = planner.plan([-1, 0], [1, 0])
+    moved = ([0.7, 0, 0], [0, 0, 0, 1])
+    around = planner.plan([-1, 0], [1, 0], objects={"ball": moved})
+    scene.move("ball", moved)
+    assert straight.cost_rad == pytest.approx(2.0) and around.cost_rad is not None and around.cost_rad > 2.5
+    assert free(scene.cell(), around) and not free(scene.cell(), straight)
+    # The object is back in its place in the next request, and on the page where it was.
+    assert planner.plan([-1, 0], [1, 0]).cost_rad == straight.cost_rad
+    assert around.page() != straight.page() and "ball" in around.page()
+    with pytest.raises(er.ArgumentError, match='no object "bal"\n  write: .*ball'):
+        planner.plan([-1, 0], [1, 0], objects={"bal": moved})
+
+
+def test_a_pose_is_reached_also_on_a_straight_line(rx60b: Path) -> None:
+    scene = er.Scene()
+    scene.add_robot("arm", rx60b)
+    planner, robot = er.Planner(scene.cell()), er.Robot.load(rx60b)
+    start = np.array([[0.3, 0.4, 1.2, 0.0, 0.6, 0.0]])
+    pose = robot.fk(start)[0]
+    pose[:3, 3] += [0.0, 0.15, -0.1]
+    for linear in (False, True):
+        path = planner.plan(start[0], pose=pose, linear=linear)
+        assert path and np.allclose(robot.fk(path.q[-1:])[0], pose, atol=1e-6)
+        way = robot.fk(path.q)[:, :3, 3] - robot.fk(start)[0, :3, 3]
+        off = np.linalg.norm(np.cross(way, way[-1]), axis=1) / np.linalg.norm(way[-1])
+        assert not linear or off.max() < 6e-4
+
+
+def test_ctrl_c_ends_a_search(exchange: Path) -> None:
+    planner = er.Planner(er.Cell.load(exchange), "left")
+    planner.plan(START, GOAL)
+    # Started in the background, a shell's children ignore the signal.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        sent: list[float] = []
+
+        def interrupt() -> None:
+            sent.append(time.monotonic())
+            signal.raise_signal(signal.SIGINT)
+
+        threading.Timer(0.5, interrupt).start()
+        with pytest.raises(KeyboardInterrupt):
+            planner.plan(START, GOAL, optimize=True, time_limit_s=60)
+        assert time.monotonic() - sent[0] < 2.0
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert planner.plan(START, GOAL)
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "text"),
+    [
+        ({"q0": [0.0] * 5}, er.ArrayError, "`q0` is"),
+        ({"q1": [0.0] * 5 + [np.nan]}, er.ArrayError, "`q1` is"),
+        ({"q1": "home"}, er.ArrayError, "`q1` is not a row of numbers"),
+        ({"q1": None}, er.ArgumentError, "one goal"),
+        ({"pose": np.eye(4)}, er.ArgumentError, "one goal"),
+        ({"q1": None, "pose": np.eye(3)}, er.ArrayError, "`pose`"),
+        ({"q1": [9.0] * 6}, er.FileError, "limit"),
+        ({"time_limit_s": -1.0}, er.ArgumentError, "seconds above 0"),
+        ({"speed": np.nan}, er.ArgumentError, "`speed`"),
+        ({"linear": True}, er.FileError, "a pose as the goal"),
+    ],
+)
+def test_what_cannot_be_planned_teaches(exchange: Path, change: dict[str, object], error: type, text: str) -> None:
+    words = {"q0": START, "q1": GOAL, **change}
+    with pytest.raises(error, match=text):
+        er.Planner(er.Cell.load(exchange), "left").plan(**words)  # type: ignore[arg-type]
+
+
+def test_a_planner_that_cannot_be_teaches(exchange: Path) -> None:
+    cell = er.Cell.load(exchange)
+    with pytest.raises(er.FileError, match="nobody"):
+        er.Planner(cell, "nobody")
+    with pytest.raises(er.FileError, match="name one"):
+        er.Planner(cell)
+    with pytest.raises(er.ArgumentError, match="rrt-connect"):
+        er.Planner(cell, "left", planner="prm")
+    with pytest.raises(er.Error, match="clearance"):
+        er.Planner(cell, "left", clearance_m=float("nan")).plan(START, GOAL)
+
+
+def test_a_planner_of_a_map_takes_free_cells() -> None:
+    scene = er.Scene()
+    turn, lift = {"alpha": np.pi / 2, "min": -2.9, "max": 2.9, "speed": 1.5}, {"a": 0.4, "min": -1.2, "max": 1.2, "speed": 1.5}
+    link = {"capsule": {"from": [-0.4, 0, 0], "to": [0, 0, 0], "radius": 0.04}}
+    scene.add("robot", "arm", dh=[turn, lift, lift], links=[[], link, link])
+    scene.add_box("post", [0.1, 0.1, 0.6], ([0.6, 0, 0], [0, 0, 0, 1]))
+    scene.add("map", "arm", step=0.05)
+    cell = scene.cell()
+    for planner in ("grid", "rrt-connect"):
+        path = er.Planner(cell, planner=planner).plan([-0.8, 0, 0], [0.8, 0, 0])
+        assert path and len(path.waypoints) > 2 and free(cell, path), path.reason
+    assert cell.map().is_blocked(np.array([[0.0, 0.0, 0.0], [0.8, 0.0, 0.0]])).tolist() == [True, False]
+    # The post in the way of the goal, and away from everything.
+    grid = er.Planner(cell, planner="grid")
+    assert not grid.plan([-0.8, 0, 0], [0.8, 0, 0], objects={"post": ([0.5, 0, 0], np.array([0, 0, 0.7, 0.7]))}).reason
+    assert grid.plan([-0.8, 0, 0], [0.8, 0, 0], objects={"post": ([5, 0, 0], [0, 0, 0, 1])}).cost_rad == pytest.approx(1.6, abs=0.1)
