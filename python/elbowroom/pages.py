@@ -18,6 +18,7 @@ class Paged(Protocol):
 
     def page(self) -> str:
         """Return the page."""
+        ...
 
 
 def frame(page: str) -> str:

@@ -227,6 +227,10 @@ class Trace:
         `(N,)`: seconds since the run began.
     q
         `(N, dof)`, rad or m.
+    qd
+        `(N, dof)`: joint velocities, as the monitor was told.
+    intent
+        `(N, dof)`: joint velocities that the program wants at override 1.
     tcp_m
         `(N, 3)`: the tool centre point in the world.
     speed_override
@@ -239,6 +243,8 @@ class Trace:
     joints: list[str]
     times_s: npt.NDArray[np.float64]
     q: npt.NDArray[np.float64]
+    qd: npt.NDArray[np.float64]
+    intent: npt.NDArray[np.float64]
     tcp_m: npt.NDArray[np.float64]
     speed_override: npt.NDArray[np.float64]
     distance_m: npt.NDArray[np.float64]
@@ -301,7 +307,7 @@ class JointMap:
 
     robot: str
     joints: list[str]
-    centers: list[npt.NDArray[np.float64]]
+    centers: list[npt.NDArray[np.float64]] = field(repr=False)
     blocked_by: dict[str, int]
     _cells: npt.NDArray[np.bool_] = field(repr=False)
     _record: MapRecord | None = field(repr=False)
@@ -366,7 +372,10 @@ class JointMap:
         -------
         JointMap
         """
-        return self._prepared().moved(dict(objects or {}), spheres)
+        places = {} if objects is None else objects
+        if not isinstance(places, Mapping):
+            raise ArgumentError(f"`objects` is a {type(places).__name__}\n  write: {{\"name\": pose}}")
+        return self._prepared().moved(dict(places), spheres)
 
     @property
     def blocked(self) -> int:

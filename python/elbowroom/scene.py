@@ -70,7 +70,7 @@ class Scene:
         keys
             Further keys of `[robot.NAME]` in a cell file, such as `start=[0.0, 0.5, …]` or `flange="tool0"`.
         """
-        model, srdf, unit, joints = files_of_robot(robot) if isinstance(robot, Robot) else (Path(robot).resolve(),) + 3 * (None,)
+        model, srdf, unit, joints = files_of_robot(robot) if isinstance(robot, Robot) else (Path(os.path.abspath(robot)), None, None, None)
         given = {"model": model, "srdf": srdf, "unit": unit, "joints": joints}
         table = {key: value for key, value in given.items() if value is not None}
         if base is not None:
@@ -116,7 +116,7 @@ class Scene:
             If `vertices` or `faces` are no such arrays.
         """
         if isinstance(mesh, str | os.PathLike):
-            self._object(name, pose, shape="mesh", mesh=Path(mesh).resolve())
+            self._object(name, pose, shape="mesh", mesh=Path(os.path.abspath(mesh)))
             return
         if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
             mesh = (mesh.vertices, mesh.faces)
@@ -135,8 +135,10 @@ class Scene:
         keys
             Its keys: numbers in metres, radians and seconds, text, true and false, lists, dicts.
         """
-        if not name:
-            raise ArgumentError(f"a {table} without a name\n  write: add({table!r}, \"name\", …)")
+        for word, what in ((table, "table"), (name, "name")):
+            # Whoever calls may not check types.
+            if type(word) is not str or not word:
+                raise ArgumentError(f"a {what} is text, and not {word!r}\n  write: add(\"object\", \"name\", …)")
         self._tables.setdefault(table, {})[name] = dict(keys)
 
     def move(self, name: str, pose: PoseLike) -> None:

@@ -250,3 +250,37 @@ def test_progress_is_told_on_standard_error(rx60b: Path, capsys: pytest.CaptureF
     monitor = er.Monitor(cell)
     monitor.evaluate(np.arange(300) * 0.002, np.zeros((300, 12)), progress=True)
     assert "300 of 300 ticks" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("level", ["auto", "L2"])
+def test_rows_that_are_asked_one_by_one_have_the_same_numbers(rx60b: Path, exchange: Path, level: str) -> None:
+    for source in (er.Robot.load(rx60b), er.Cell.load(exchange)):
+        checker = er.Checker(source, level=level)
+        lower, upper = np.clip(checker.limits, -3, 3).T
+        q = np.random.default_rng(3).uniform(lower, upper, (400, len(checker.joints)))
+        collides, distance, within = checker.collides(q), checker.distance(q), checker.within(q, 0.05)
+        assert 0 < collides.sum() < len(q)
+        for few in (1, 3, 16):
+            rows = np.random.default_rng(few).permutation(len(q))[: 200 // few * few].reshape(-1, few)
+            for row in rows:
+                assert (checker.distance(q[row]) == distance[row]).all()
+                assert (checker.collides(q[row]) == collides[row]).all()
+                assert (checker.within(q[row], 0.05) == within[row]).all()
+
+
+def test_threads_that_ask_row_by_row_have_the_same_numbers(exchange: Path) -> None:
+    checker = er.Checker(er.Cell.load(exchange))
+    q = np.random.default_rng(4).uniform(-1, 1, (300, 12))
+    expected = checker.distance(q)
+    found = np.zeros((4, len(q)))
+
+    def ask(number: int) -> None:
+        for row in np.random.default_rng(number).permutation(len(q)):
+            found[number, row] = checker.distance(q[row : row + 1])[0]
+
+    threads = [threading.Thread(target=ask, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert (found == expected).all()

@@ -55,6 +55,26 @@ def test_the_overrides_along_a_recording_are_those_of_the_run() -> None:
     assert (found.times_s == trace.times_s).all() and len(found.reason) == len(trace.times_s)
 
 
+@pytest.mark.parametrize("name", ["figure12", "exchange", "inspection"])
+def test_told_velocities_and_intents_the_overrides_are_those_of_the_run(name: str) -> None:
+    cell = er.Cell.load(ROOT / f"examples/{name}/cell.toml")
+    run, monitor = cell.run(), er.Monitor(cell)
+    traces = [run.trace(robot) for robot in cell.robots]
+    q, qd, intent = (np.hstack([getattr(trace, what) for trace in traces]) for what in ("q", "qd", "intent"))
+    found = monitor.evaluate(traces[0].times_s, q, qd, intent=intent)
+    for robot, trace in enumerate(traces):
+        assert trace.qd.shape == trace.intent.shape == trace.q.shape
+        # Programs that ask for less than the whole override have it in their trace.
+        differ = found.speed_override[:, robot] != trace.speed_override
+        assert not differ.any(), (name, trace.robot, differ.sum(), trace.times_s[differ][:3])
+        if name == "inspection":
+            continue  # Arms that act as one follow their work-piece in steps.
+        # The velocities are those of the motion.
+        steps = np.diff(trace.q, axis=0) / np.diff(trace.times_s)[:, None]
+        assert np.abs(steps - 0.5 * (trace.qd[1:] + trace.qd[:-1])).max() < 0.2
+    assert found.speed_override.min() < 0.9
+
+
 def test_the_override_falls_with_the_distance(monitor: er.Monitor) -> None:
     assert (monitor.robots, monitor.joints, monitor.regions) == (["rail"], ["rail.joint_1"], ["end", "lamp"])
     for k, z_m in enumerate(np.linspace(0.2, 0.9, 8)):

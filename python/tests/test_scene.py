@@ -108,7 +108,7 @@ def test_what_has_no_place_in_a_scene_teaches() -> None:
         (lambda: scene.add_box("box", [1, 2]), er.ArrayError, "`size_m`"),
         (lambda: scene.add_box("box", [1, 2, np.nan]), er.ArrayError, "finite"),
         (lambda: scene.add_box("box", words), er.ArrayError, "`size_m`"),
-        (lambda: scene.add_box("", [1, 2, 3]), er.ArgumentError, "without a name"),
+        (lambda: scene.add_box("", [1, 2, 3]), er.ArgumentError, "a name is text"),
         (lambda: scene.add_box("box", [1, 2, 3], np.eye(3)), er.ArrayError, "`pose`"),
         (lambda: scene.add_mesh("mesh", 5), er.ArgumentError, "no mesh"),
         (lambda: scene.add_mesh("mesh", (CUBE[0], CUBE[1] + 1)), er.ArrayError, "indices from 1 to 8"),

@@ -7,6 +7,8 @@ use crate::shell;
 
 /// What the tests in Python run with.
 pub const PYTEST: &str = "pytest==9.2.0";
+/// Pyright with its own Node.js.
+pub const BASEDPYRIGHT: &str = "basedpyright==1.40.2";
 /// What the tests in Python make random input with.
 pub const HYPOTHESIS: &str = "hypothesis==6.170.17";
 

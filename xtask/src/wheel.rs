@@ -39,8 +39,16 @@ pub fn run(root: &Path, manylinux: bool) -> Result<(), String> {
         return Err(format!("the wheel has {bytes} bytes, more than {LARGEST}"));
     }
     let file = wheel.to_string_lossy().into_owned();
-    let packages =
-        [&file, python::PYTEST, python::HYPOTHESIS, python::PYARROW, python::RAY, python::SCIPY, python::MATPLOTLIB];
+    let packages = [
+        &file,
+        python::BASEDPYRIGHT,
+        python::PYTEST,
+        python::HYPOTHESIS,
+        python::PYARROW,
+        python::RAY,
+        python::SCIPY,
+        python::MATPLOTLIB,
+    ];
     let python = python::environment(root, &target.join("wheel/test"), &packages, &[])?;
     let python = python.to_string_lossy().into_owned();
     let tests = root.join("python/tests").to_string_lossy().into_owned();

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from elbowroom.errors import ArgumentError
 from elbowroom.sweep.extras import imported

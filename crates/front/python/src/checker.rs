@@ -14,15 +14,19 @@ use pyo3::prelude::*;
 use crate::arrays::{CHUNK, Rows};
 use crate::cell::Cell;
 use crate::error::Fault;
+use crate::kept_checker::KeptChecker;
 use crate::progress::Progress;
 use crate::robot::{Robot, joint_names};
 use crate::rows::shaped;
 
+/// Rows up to which a call keeps its checker.
+const FEW: usize = 16;
+
 /// Robots and objects with their scene: constant, and shared by threads.
-struct Model {
+pub struct Model {
     query: QueryModel,
-    scene: Scene,
-    start: SceneState,
+    pub scene: Scene,
+    pub start: SceneState,
     /// Names of the columns of states: joints of the robots, side by side.
     columns: Vec<String>,
 }
@@ -68,6 +72,7 @@ pub struct Checker {
     threads: Option<NonZeroUsize>,
     options: CheckerOptions,
     pairs: QueryPairs,
+    kept: KeptChecker,
 }
 
 impl Model {
@@ -153,6 +158,25 @@ impl Checker {
         Ok(progress.end(py)?)
     }
 
+    /// Answers a query without names about every row; for a few rows by a checker that is kept.
+    fn answer_unnamed(
+        &self,
+        q: &Bound<'_, PyAny>,
+        kind: QueryKind,
+        progress: bool,
+        mut take: impl FnMut(&QueryRow) + Send,
+    ) -> Result<(), Fault> {
+        let rows = Rows::of(q, "q", &self.model.columns)?;
+        if rows.len() <= FEW && !progress {
+            let states = QueryStates::of_rows(&self.model.query, rows.all()?);
+            let options = (self.options, &self.pairs);
+            if let Some(answered) = q.py().detach(|| self.kept.rows(&self.model, options, &states, kind, &mut take)) {
+                return answered.map_err(|e| Fault::File(Diagnostic::new(&states.file, None, e)));
+            }
+        }
+        self.answer(q, kind, progress, take).map(drop)
+    }
+
     fn name(&self, pair: Option<(GeometryId, GeometryId)>, side: usize) -> Option<String> {
         pair.map(|(a, b)| self.model.query.geometry_name([a, b][side]))
     }
@@ -219,7 +243,8 @@ impl Checker {
         let model = py.detach(|| Model::new(query))?;
         let options = CheckerOptions { level: parsed, ..CheckerOptions::default() };
         let (source, level) = (source.unbind(), level.to_owned());
-        Ok(Self { model: Arc::new(model), source, level, between, threads, options, pairs })
+        let kept = KeptChecker::default();
+        Ok(Self { model: Arc::new(model), source, level, between, threads, options, pairs, kept })
     }
 
     /// The names of the columns of states: `joint` for a robot, `robot.joint` for a cell, side by side.
@@ -261,7 +286,7 @@ impl Checker {
     #[pyo3(signature = (q, *, progress=false))]
     fn collides<'py>(&self, q: &Bound<'py, PyAny>, progress: bool) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let mut out = Vec::new();
-        self.answer(q, QueryKind::Collision, progress, |row| out.push(row.collides))?;
+        self.answer_unnamed(q, QueryKind::Collision, progress, |row| out.push(row.collides))?;
         Ok(PyArray1::from_vec(q.py(), out))
     }
 
@@ -281,7 +306,7 @@ impl Checker {
     #[pyo3(signature = (q, *, progress=false))]
     fn distance<'py>(&self, q: &Bound<'py, PyAny>, progress: bool) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let mut out = Vec::new();
-        self.answer(q, QueryKind::Distance, progress, |row| out.push(metres(row)))?;
+        self.answer_unnamed(q, QueryKind::Distance, progress, |row| out.push(metres(row)))?;
         Ok(PyArray1::from_vec(q.py(), out))
     }
 
@@ -314,7 +339,7 @@ impl Checker {
             return Err(Fault::Argument(text).into());
         }
         let mut out = Vec::new();
-        self.answer(q, QueryKind::Tolerance(tolerance_m), progress, |row| out.push(row.collides))?;
+        self.answer_unnamed(q, QueryKind::Tolerance(tolerance_m), progress, |row| out.push(row.collides))?;
         Ok(PyArray1::from_vec(q.py(), out))
     }
 

@@ -12,6 +12,7 @@ mod cell;
 mod checker;
 mod error;
 mod joint_map;
+mod kept_checker;
 mod monitor;
 mod page;
 mod places;

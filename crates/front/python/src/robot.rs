@@ -14,7 +14,7 @@ use elbowroom::spatial::{Pose, Rotation, Vec3};
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 
-use crate::arrays::Rows;
+use crate::arrays::{Rows, vector};
 use crate::error::Fault;
 use crate::page;
 use crate::rows::{map_rows, shaped};
@@ -216,18 +216,17 @@ impl Robot {
     /// ndarray
     ///     `(N, 6, dof)`: velocity of the point (three rows, m) and angular velocity of the link (three rows, rad) per unit of joint
     ///     velocity, in the root link.
-    #[pyo3(signature = (q, link=None, point=[0.0; 3]))]
+    #[pyo3(signature = (q, link=None, point=None))]
     fn jacobian<'py>(
         &self,
         q: &Bound<'py, PyAny>,
         link: Option<&str>,
-        point: [f64; 3],
+        point: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let (rows, link) = (Rows::of(q, "q", &self.joint_names)?, self.link(link)?);
-        if !point.iter().all(|v| v.is_finite()) {
-            return Err(Fault::Argument(format!("`point` is {point:?}\n  write: three finite numbers, metres")).into());
-        }
-        let (chain, point) = (self.chain(), Vec3::from(point));
+        let axes = || ["x", "y", "z"].map(String::from);
+        let point = point.map_or(Ok(vec![0.0; 3]), |point| vector(point, "point", &axes()))?;
+        let (chain, point) = (self.chain(), Vec3::new(point[0], point[1], point[2]));
         let dof = chain.dof();
         let worker = || (ChainState::new(chain), vec![[0.0; 6]; dof]);
         let values = map_rows(q.py(), &rows, 6 * dof, worker, |(state, columns), q, out| {

@@ -50,13 +50,16 @@ impl RunRecord {
         let track = track.ok_or_else(|| Fault::no_robot(robot, &self.robots()))?;
         let column = |value: &dyn Fn(&Sample) -> f64| PyArray1::from_vec(py, track.samples.iter().map(value).collect());
         let count = track.samples.len();
-        let q: Vec<f64> = track.samples.iter().flat_map(|sample| sample.q.iter().copied()).collect();
+        let rows = |values: &dyn Fn(&Sample) -> &[f64]| {
+            let all: Vec<f64> = track.samples.iter().flat_map(|sample| values(sample).iter().copied()).collect();
+            shaped(&PyArray1::from_vec(py, all), [count, track.joints.len()])
+        };
+        let (q, qd, intent) = (rows(&|s| &s.q)?, rows(&|s| &s.qd)?, rows(&|s| &s.intent)?);
         let tcp: Vec<f64> = track.samples.iter().flat_map(|sample| sample.tcp.to_array()).collect();
-        let q = shaped(&PyArray1::from_vec(py, q), [count, track.joints.len()])?;
         let tcp = shaped(&PyArray1::from_vec(py, tcp), [count, 3])?;
         let (times, factors) = (column(&|s| s.t_s), column(&|s| s.speed_override));
         let distances = column(&|s| s.distance_m.unwrap_or(f64::NAN));
         let make = py.import("elbowroom.results")?.getattr("Trace")?;
-        make.call1((robot, track.joints.clone(), times, q, tcp, factors, distances))
+        make.call1((robot, track.joints.clone(), times, q, qd, intent, tcp, factors, distances))
     }
 }

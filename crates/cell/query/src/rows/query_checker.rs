@@ -32,6 +32,11 @@ impl<'s> QueryChecker<'s> {
         Self { checker: Checker::new(scene, options), sides: pairs.sides().to_vec() }
     }
 
+    /// The scene.
+    pub fn scene(&self) -> &'s Scene {
+        self.checker.scene()
+    }
+
     /// Counters of the answers so far.
     pub fn stats(&self) -> CheckerStats {
         self.checker.stats()

@@ -142,6 +142,8 @@ pub fn recording(monitored: bool, ticks: usize, name: &str) -> Recording {
         samples.push(Sample {
             t_s,
             q: reach(tcp),
+            qd: vec![0.0; 2],
+            intent: vec![0.0; 2],
             tcp,
             tcp_speed: v,
             programmed_speed: programmed,

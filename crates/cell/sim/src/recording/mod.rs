@@ -117,6 +117,10 @@ pub struct Sample {
     pub t_s: f64,
     /// Joint positions, rad or m.
     pub q: Vec<f64>,
+    /// Joint velocities, rad/s or m/s, as its monitor was told without faults.
+    pub qd: Vec<f64>,
+    /// Joint velocities that the program wants at override 1.
+    pub intent: Vec<f64>,
     /// Tool centre point in the world, m.
     pub tcp: Vec3,
     /// Speed of the TCP, m/s.

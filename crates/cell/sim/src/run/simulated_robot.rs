@@ -204,6 +204,8 @@ impl<'a> SimulatedRobot<'a> {
         self.track.samples.push(Sample {
             t_s,
             q: state.q.clone(),
+            qd: state.qd.clone(),
+            intent: self.own_motion.intent(&self.clock).to_vec(),
             tcp,
             tcp_speed,
             programmed_speed,
