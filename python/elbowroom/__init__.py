@@ -8,10 +8,10 @@ Joint values are `(N, dof)` arrays of float64, radians for joints that turn and 
 state. Lengths are metres, times seconds. For a cell the robots stand side by side in the order of the file.
 """
 
-from elbowroom._elbowroom import Cell, Checker, Monitor, Planner, ReachQuery, Robot, __version__
+from elbowroom._elbowroom import Cell, Checker, GuidedArm, Monitor, Planner, ReachQuery, Robot, __version__
 from elbowroom.errors import ArgumentError, ArrayError, Error, FileError
 from elbowroom.pages import save, show
-from elbowroom.results import Edges, JointMap, Overrides, Path, Reach, Run, Tick, Trace, Witness
+from elbowroom.results import Edges, Guidance, GuidedStep, JointMap, Overrides, Path, Reach, Run, Tick, Trace, Witness
 from elbowroom.scene import Scene
 
 __all__ = [
@@ -22,6 +22,9 @@ __all__ = [
     "Edges",
     "Error",
     "FileError",
+    "Guidance",
+    "GuidedArm",
+    "GuidedStep",
     "JointMap",
     "Monitor",
     "Overrides",

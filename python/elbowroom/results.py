@@ -17,7 +17,7 @@ from elbowroom.poses import PoseLike
 if TYPE_CHECKING:
     from elbowroom._elbowroom import MapRecord, PathRecord, RunRecord
 
-__all__ = ["Edges", "JointMap", "Overrides", "Path", "Reach", "Run", "Tick", "Trace", "Witness"]
+__all__ = ["Edges", "Guidance", "GuidedStep", "JointMap", "Overrides", "Path", "Reach", "Run", "Tick", "Trace", "Witness"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,6 +289,67 @@ class Run:
 
     def _repr_html_(self) -> str:
         return frame(self.page())
+
+
+@dataclass(frozen=True, eq=False)
+class GuidedStep:
+    """What a guided arm did in a step.
+
+    Attributes
+    ----------
+    q
+        `(dof,)`, rad or m: the joint values after the step.
+    tool
+        `(4, 4)`: the tool centre point in the world, metres.
+    gap_m
+        The distance between tool and surfaces at the start of the step; NaN if none is near.
+    limit
+        What kept the arm from following the hand: `"surface"`, `"entry"`, `"reach"`, `"joint speed"`, `"contact"`, `"energy"` or
+        `"unproven"`; `None` if it followed.
+    limited_by
+        The joint that is too slow, or the part that would be touched; otherwise `None`.
+    force_n
+        `(3,)`: the force that the hand feels, world axes; NaN without forces in the cell.
+    """
+
+    q: npt.NDArray[np.float64]
+    tool: npt.NDArray[np.float64]
+    gap_m: float
+    limit: str | None
+    limited_by: str | None
+    force_n: npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Guidance:
+    """What a guided arm did in many steps; the rows are those of `GuidedStep`.
+
+    Attributes
+    ----------
+    joints
+        The names of the joints, in the order of the values.
+    q
+        `(N, dof)`, rad or m.
+    tool
+        `(N, 4, 4)`, metres.
+    gap_m
+        `(N,)`.
+    limit, limited_by
+        A word or `None` per step.
+    force_n
+        `(N, 3)`.
+    """
+
+    joints: list[str]
+    q: npt.NDArray[np.float64]
+    tool: npt.NDArray[np.float64]
+    gap_m: npt.NDArray[np.float64]
+    limit: list[str | None]
+    limited_by: list[str | None]
+    force_n: npt.NDArray[np.float64]
+
+    def _only(self) -> GuidedStep:
+        return GuidedStep(self.q[0], self.tool[0], float(self.gap_m[0]), self.limit[0], self.limited_by[0], self.force_n[0])
 
 
 @dataclass(frozen=True, eq=False)

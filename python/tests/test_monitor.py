@@ -55,7 +55,7 @@ def test_the_overrides_along_a_recording_are_those_of_the_run() -> None:
     assert (found.times_s == trace.times_s).all() and len(found.reason) == len(trace.times_s)
 
 
-@pytest.mark.parametrize("name", ["figure12", "exchange", "inspection"])
+@pytest.mark.parametrize("name", ["figure12", "exchange", "conveyor"])
 def test_told_velocities_and_intents_the_overrides_are_those_of_the_run(name: str) -> None:
     cell = er.Cell.load(ROOT / f"examples/{name}/cell.toml")
     run, monitor = cell.run(), er.Monitor(cell)
@@ -67,8 +67,6 @@ def test_told_velocities_and_intents_the_overrides_are_those_of_the_run(name: st
         # Programs that ask for less than the whole override have it in their trace.
         differ = found.speed_override[:, robot] != trace.speed_override
         assert not differ.any(), (name, trace.robot, differ.sum(), trace.times_s[differ][:3])
-        if name == "inspection":
-            continue  # Arms that act as one follow their work-piece in steps.
         # The velocities are those of the motion.
         steps = np.diff(trace.q, axis=0) / np.diff(trace.times_s)[:, None]
         assert np.abs(steps - 0.5 * (trace.qd[1:] + trace.qd[:-1])).max() < 0.2

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import elbowroom as er
+from conftest import ROOT
 
 CALLS = int(os.environ.get("ELBOWROOM_RANDOM_CALLS", "3000"))
 
@@ -86,6 +87,8 @@ def methods(source: Any) -> list[tuple[Callable[..., Any], list[str]]]:
         "jacobian": ["link", "point"],
         "fk": ["link"],
         "ik": ["link"],
+        "step": ["speed_override"],
+        "follow": ["speed_override"],
         "moved": ["spheres"],
     }
     left_out = {"page", "save", "run", "report", "load"}
@@ -106,6 +109,8 @@ def usual(rng: random.Random, name: str, width: int) -> list[Any]:
         "tick": [rng.uniform(0, 9), row],
         "evaluate": [np.sort(np.arange(rows, dtype=float)), q] if width == 12 else [q],
         "moved": [{"pallet": there}],
+        "step": [there],
+        "follow": [q],
         "switch": ["table", True],
         "is_active": ["table"],
         "add": ["object", "thing"],
@@ -131,12 +136,13 @@ def test_random_calls_answer_or_say_why(rx60b: Path, exchange: Path) -> None:
         (er.Checker(robot), robot.dof),
         (er.Checker(cell), 12),
         (er.Monitor(cell), 12),
+        (er.GuidedArm(er.Cell.load(ROOT / "examples/guided/cell.toml")), 7),
         (er.Planner(cell, "left"), 6),
         (er.ReachQuery(cell, "left"), 7),
         (cell.map("left"), 3),
         (er.Scene(), 3),
     ]
-    makers: list[Callable[..., Any]] = [er.Robot.load, er.Cell.load, er.Checker, er.Monitor, er.Planner, er.ReachQuery, er.Scene]
+    makers: list[Callable[..., Any]] = [er.Robot.load, er.Cell.load, er.Checker, er.GuidedArm, er.Monitor, er.Planner, er.ReachQuery, er.Scene]
     answered = 0
     seed = random.randrange(2**32) if CALLS > 3000 else 7
     rng = random.Random(seed)

@@ -7,14 +7,17 @@ use elbowroom_kinematics::LinkId;
 use elbowroom_proximity::contact::triangle_surface;
 use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_robot::{Collider, GeometryId, ObjectId};
-use elbowroom_scene::{Object, PairEdit, PairRule, PairRules, Selection};
+use elbowroom_scene::{Object, PairEdit, PairRule, PairRules, Scene, Selection};
 use elbowroom_shared_control::{
     NavigatorError, Passage, ProtectedSurface, Shield, ShieldError, ShieldSettings, generate_shield, line_on_surface,
 };
 use elbowroom_spatial::{Pose, Vec3};
 
 use crate::area_border::{AROUND, crossing_edges, crossing_text};
-use crate::{Cell, CellFixture, CellOperator, CellRobot, CellTool, FixtureTool, ShieldSource, Units};
+use crate::{
+    Cell, CellFixture, CellOperator, CellRobot, CellTool, FixtureTool, OutOfReachProofs, QueryModel, ShieldSource,
+    Units,
+};
 
 impl FixtureTool {
     /// The link that carries its solid.
@@ -68,6 +71,16 @@ impl Cell {
             Some(PairRule { a: link.into(), b: Selection::Object(fixture.protects), edit })
         };
         self.guidance.fixtures.iter().enumerate().filter_map(opened).collect()
+    }
+
+    /// The scene in which persons guide arms: their tools may enter the openings of their shields.
+    ///
+    /// # Errors
+    /// As for [`QueryModel::scene`].
+    pub fn scene_of_guidance(&self) -> Result<Scene, Diagnostic> {
+        let mut model = QueryModel::of_cell(self);
+        model.add_rules(self.opened_pairs());
+        model.scene(OutOfReachProofs::Omit)
     }
 }
 

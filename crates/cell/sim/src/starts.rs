@@ -1,15 +1,7 @@
 //! Where robots start that decide their motion themselves: guided ones, and virtual robots.
 
-use elbowroom_cell::{Cell, OutOfReachProofs, QueryModel};
+use elbowroom_cell::Cell;
 use elbowroom_diagnostic::Diagnostic;
-use elbowroom_scene::Scene;
-
-/// The scene of a run, in which guided tools may enter the openings of their shields.
-pub(crate) fn scene(cell: &Cell) -> Result<Scene, Diagnostic> {
-    let mut model = QueryModel::of_cell(cell);
-    model.add_rules(cell.opened_pairs());
-    model.scene(OutOfReachProofs::Omit)
-}
 
 /// Whether every guided robot and every virtual robot can start as its table says, as a run demands. Returns the notes of the
 /// run.
@@ -21,7 +13,7 @@ pub fn check_starts(cell: &Cell) -> Result<Vec<Diagnostic>, Diagnostic> {
     if guidance.operators.is_empty() && guidance.virtual_robots.is_empty() {
         return Ok(Vec::new());
     }
-    let scene = scene(cell)?;
+    let scene = cell.scene_of_guidance()?;
     let mut notes = Vec::new();
     guidance.operators.iter().try_for_each(|operator| operator.arm(cell, &scene, &mut notes).map(|_| ()))?;
     guidance.virtual_robots.iter().try_for_each(|spec| spec.start(cell, &scene).map(|_| ()))?;

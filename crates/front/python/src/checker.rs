@@ -4,10 +4,10 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use elbowroom::Diagnostic;
-use elbowroom::cell::{OutOfReachProofs, QueryModel};
+use elbowroom::cell::QueryModel;
 use elbowroom::query::{self, Level, MotionRow, Query, QueryKind, QueryPairs, QueryRow, QueryStates};
 use elbowroom::robot::GeometryId;
-use elbowroom::scene::{CheckerOptions, Scene, SceneState};
+use elbowroom::scene::CheckerOptions;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -15,21 +15,13 @@ use crate::arrays::{CHUNK, Rows};
 use crate::cell::Cell;
 use crate::error::Fault;
 use crate::kept_checker::KeptChecker;
+use crate::model::Model;
 use crate::progress::Progress;
-use crate::robot::{Robot, joint_names};
+use crate::robot::Robot;
 use crate::rows::shaped;
 
 /// Rows up to which a call keeps its checker.
 const FEW: usize = 16;
-
-/// Robots and objects with their scene: constant, and shared by threads.
-pub struct Model {
-    query: QueryModel,
-    pub scene: Scene,
-    pub start: SceneState,
-    /// Names of the columns of states: joints of the robots, side by side.
-    columns: Vec<String>,
-}
 
 /// Collision, distance and tolerance of the states of a robot or a cell.
 ///
@@ -73,23 +65,6 @@ pub struct Checker {
     options: CheckerOptions,
     pairs: QueryPairs,
     kept: KeptChecker,
-}
-
-impl Model {
-    fn new(query: QueryModel) -> Result<Self, Fault> {
-        let scene = query.scene(OutOfReachProofs::Compute)?;
-        let start = query.start_state(&scene)?;
-        let columns = query.robots.iter().flat_map(|robot| {
-            let prefix = if query.is_single_robot { String::new() } else { format!("{}.", robot.name) };
-            joint_names(&robot.robot.chain).into_iter().map(move |joint| format!("{prefix}{joint}"))
-        });
-        let columns: Vec<String> = columns.collect();
-        if columns.is_empty() {
-            let text = "the model has no joint that moves, so it has no states\n  write: a robot with joints";
-            return Err(Fault::Argument(text.into()));
-        }
-        Ok(Self { query, scene, start, columns })
-    }
 }
 
 impl Checker {

@@ -6,7 +6,7 @@ use elbowroom::query::{QueryChecker, QueryKind, QueryPairs, QueryRow, QueryState
 use elbowroom::scene::{CheckerOptions, SceneError, SceneState};
 use self_cell::self_cell;
 
-use crate::checker::Model;
+use crate::model::Model;
 
 /// A checker with the state that it looks at.
 struct Answering<'m> {

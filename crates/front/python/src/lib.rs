@@ -11,8 +11,10 @@ mod arrays;
 mod cell;
 mod checker;
 mod error;
+mod guided_arm;
 mod joint_map;
 mod kept_checker;
+mod model;
 mod monitor;
 mod page;
 mod places;
@@ -35,6 +37,7 @@ fn _elbowroom(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<monitor::Monitor>()?;
     module.add_class::<reach::ReachQuery>()?;
     module.add_class::<run::RunRecord>()?;
+    module.add_class::<guided_arm::GuidedArm>()?;
     module.add_class::<joint_map::MapRecord>()?;
     module.add_class::<planner::Planner>()?;
     module.add_class::<planner::PathRecord>()

@@ -39,7 +39,6 @@ use elbowroom_scene::Scene;
 use crate::motion::{PlannedPaths, ProgramClock, ProgramPlan, plan};
 use crate::recording::{Recording, RegionTrack};
 use crate::replanning::{PathGuard, PathReplanner, PerceivedObstacles, SearchTiming};
-use crate::starts::scene;
 use avoiding_robot::AvoidingRobot;
 pub use avoiding_robot::evasion_limits;
 use contact_recorder::ContactRecorder;
@@ -116,7 +115,7 @@ pub fn simulate_observed(
         let clock = ProgramClock::new(plan, cell.robots[i].limits.clone());
         robots.push(SimulatedRobot::new(cell, RobotId(i), setup, monitor, clock, claims));
     }
-    let scene = scene(cell)?;
+    let scene = cell.scene_of_guidance()?;
     let virtual_robots = own_motions(cell, &scene, options, &mut robots, &mut notes)?;
     let models: Vec<Robot> = cell.robots.iter().map(CellRobot::with_all_tools).collect();
     let states: Vec<ChainState> = cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect();

@@ -1,0 +1,348 @@
+//! An arm that a person guides, step by step.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use elbowroom::cell::{Cell as Model, CellOperator, OperatedArm};
+use elbowroom::formats::suggest;
+use elbowroom::robot::GeometryId;
+use elbowroom::scene::Scene;
+use elbowroom::shared_control::{ArmLimit, GuidedStep, Limit};
+use elbowroom::spatial::{Pose, Rotation, Vec3};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use self_cell::self_cell;
+
+use crate::arrays::Rows;
+use crate::cell::Cell;
+use crate::error::Fault;
+use crate::progress::Progress;
+use crate::robot::pose_of;
+use crate::rows::shaped;
+
+/// Steps between two looks at the signals: a step takes a few milliseconds at most.
+const BETWEEN_SIGNALS: usize = 16;
+
+/// A cell with its scene.
+struct Surroundings {
+    cell: Arc<Model>,
+    scene: Scene,
+    /// Index of the operator.
+    operator: usize,
+}
+
+self_cell!(
+    /// An arm beside the scene that it borrows.
+    struct Session {
+        owner: Surroundings,
+
+        #[not_covariant]
+        dependent: OperatedArm,
+    }
+);
+
+impl Surroundings {
+    fn operator(&self) -> &CellOperator {
+        &self.cell.guidance.operators[self.operator]
+    }
+
+    /// The name of what keeps the arm from following: a joint, or the other one of two parts that would touch.
+    fn limited_by(&self, limit: ArmLimit) -> Option<String> {
+        let robot = self.operator().robot;
+        match limit {
+            ArmLimit::JointSpeed(joint) => self.cell.robots[robot.0].joint_names().get(joint).cloned(),
+            ArmLimit::Contact(a, b) => {
+                let is_own = |part: &GeometryId| matches!(part, GeometryId::Link { robot: of, .. } if *of == robot);
+                Some(self.cell.part_name(if is_own(&a) { b } else { a }))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A robot that a person guides: its tool follows poses and glides along surfaces, shields and guides.
+///
+/// The arm has the fixtures, forces and settings of `[operator.NAME]` in the cell file; the stream of that table is not read, the poses
+/// are those of the calls. Fixtures are on as at the start of the stream. Other robots and objects stay where they are at the start.
+/// No motion is made that is not proven free. Threads that share an arm take turns.
+///
+/// Parameters
+/// ----------
+/// cell
+///     The cell.
+/// operator
+///     Name of the operator; `None` if there is only one.
+///
+/// Raises
+/// ------
+/// ArgumentError
+///     If there is no such operator.
+/// FileError
+///     If the arm starts too near to a surface, or a shield cannot be made.
+///
+/// Examples
+/// --------
+/// >>> import numpy as np, elbowroom as er
+/// >>> arm = er.GuidedArm(er.Cell.load("examples/guided/cell.toml"))
+/// >>> start = arm.tool
+/// >>> step = arm.step(start)                 # the hand keeps still
+/// >>> bool(np.abs(step.tool - start).max() < 1e-9), step.limit
+/// (True, None)
+#[pyclass(module = "elbowroom", frozen)]
+pub struct GuidedArm {
+    cell: Arc<Model>,
+    operator: usize,
+    notes: Vec<String>,
+    session: Mutex<Session>,
+}
+
+impl GuidedArm {
+    fn begin(cell: &Arc<Model>, operator: usize) -> Result<(Session, Vec<String>), Fault> {
+        let scene = cell.scene_of_guidance()?;
+        let owner = Surroundings { cell: cell.clone(), scene, operator };
+        let mut notes = Vec::new();
+        let session = Session::try_new(owner, |owner| owner.operator().arm(&owner.cell, &owner.scene, &mut notes))?;
+        Ok((session, notes.iter().map(ToString::to_string).collect()))
+    }
+
+    /// The session, for one thread at a time. Call it only where other threads of Python may run, which may hold it.
+    fn session(&self) -> MutexGuard<'_, Session> {
+        self.session.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn operator(&self) -> &CellOperator {
+        &self.cell.guidance.operators[self.operator]
+    }
+
+    /// Makes a step of a tick.
+    fn advance(&self, session: &mut Session, wanted: Option<&Pose>, speed_override: f64, out: &mut Steps) {
+        let tick_s = self.cell.timing.tick_s;
+        session.with_dependent_mut(|surroundings, operated| {
+            let step = operated.arm.step(wanted, tick_s, speed_override);
+            out.add(surroundings, operated, &step);
+        });
+    }
+}
+
+/// What the steps did, one after another.
+#[derive(Default)]
+struct Steps {
+    q: Vec<f64>,
+    tool: Vec<f64>,
+    gap_m: Vec<f64>,
+    limits: Vec<Option<&'static str>>,
+    limited_by: Vec<Option<String>>,
+    force_n: Vec<f64>,
+}
+
+impl Steps {
+    fn add(&mut self, surroundings: &Surroundings, operated: &OperatedArm<'_>, step: &GuidedStep) {
+        self.q.extend(operated.arm.q());
+        self.tool.extend(operated.arm.tool_in_world().to_rows().as_flattened());
+        self.tool.extend([0.0, 0.0, 0.0, 1.0]);
+        self.gap_m.push(step.tool.gap_m.unwrap_or(f64::NAN));
+        self.limits.push(step.limit.map(word));
+        self.limited_by.push(step.limit.and_then(|limit| surroundings.limited_by(limit)));
+        let force = operated.arm.forces().map_or([f64::NAN; 3], |forces| forces.force_on_hand().to_array());
+        self.force_n.extend(force);
+    }
+
+    /// The steps as an object of the package.
+    fn told(self, py: Python<'_>, joints: Vec<String>) -> PyResult<Bound<'_, PyAny>> {
+        let (count, dof) = (self.gap_m.len(), joints.len());
+        let q = shaped(&PyArray1::from_vec(py, self.q), [count, dof])?;
+        let tool = shaped(&PyArray1::from_vec(py, self.tool), [count, 4, 4])?;
+        let force = shaped(&PyArray1::from_vec(py, self.force_n), [count, 3])?;
+        let gap = PyArray1::from_vec(py, self.gap_m);
+        let make = py.import("elbowroom.results")?.getattr("Guidance")?;
+        make.call1((joints, q, tool, gap, self.limits, self.limited_by, force))
+    }
+}
+
+/// The word for what kept an arm from following.
+fn word(limit: ArmLimit) -> &'static str {
+    match limit {
+        ArmLimit::Tool(Limit::Surface) => "surface",
+        ArmLimit::Tool(Limit::Entry) => "entry",
+        ArmLimit::Tool(_) | ArmLimit::Unproven => "unproven",
+        ArmLimit::Reach => "reach",
+        ArmLimit::JointSpeed(_) => "joint speed",
+        ArmLimit::Contact(..) => "contact",
+        ArmLimit::Energy => "energy",
+    }
+}
+
+/// An override from 0 to 1.
+fn share(speed_override: f64) -> Result<f64, Fault> {
+    if (0.0..=1.0).contains(&speed_override) {
+        return Ok(speed_override);
+    }
+    Err(Fault::Argument(format!("`speed_override` is {speed_override}\n  write: a number from 0 to 1")))
+}
+
+#[pymethods]
+impl GuidedArm {
+    #[new]
+    #[pyo3(signature = (cell, operator=None))]
+    fn new(py: Python<'_>, cell: &Bound<'_, Cell>, operator: Option<&str>) -> PyResult<Self> {
+        let cell = cell.get().model.clone();
+        let names = || cell.guidance.operators.iter().map(|operator| operator.name.as_str());
+        let found = match (operator, names().count()) {
+            (None, 1) => Some(0),
+            (None, _) => None,
+            (Some(name), _) => names().position(|known| known == name),
+        };
+        let operator = found.ok_or_else(|| {
+            let text = match (operator, names().count()) {
+                (_, 0) => "the cell has no operator\n  write: [operator.NAME] in the cell file".to_owned(),
+                (None, count) => {
+                    format!("the cell has {count} operators\n  write: {}", suggest::hint("", names()))
+                }
+                (Some(name), _) => {
+                    format!("no operator is called \"{name}\"\n  write: {}", suggest::hint(name, names()))
+                }
+            };
+            Fault::Argument(text)
+        })?;
+        let (session, notes) = py.detach(|| Self::begin(&cell, operator))?;
+        Ok(Self { cell, operator, notes, session: Mutex::new(session) })
+    }
+
+    /// The name of the robot.
+    #[getter]
+    fn robot(&self) -> &str {
+        &self.cell.robots[self.operator().robot.0].name
+    }
+
+    /// The names of its joints, in the order of the values.
+    #[getter]
+    fn joints(&self) -> Vec<String> {
+        self.cell.robots[self.operator().robot.0].joint_names()
+    }
+
+    /// Duration of a step: the tick of the cell, seconds.
+    #[getter]
+    fn period_s(&self) -> f64 {
+        self.cell.timing.tick_s
+    }
+
+    /// What the tool does not glide along, and other remarks.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    /// The joint values, `(dof,)`, rad or m.
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let q = py.detach(|| self.session().with_dependent(|_, operated| operated.arm.q().to_vec()));
+        PyArray1::from_vec(py, q)
+    }
+
+    /// The pose of the tool centre point in the world, `(4, 4)`.
+    #[getter]
+    fn tool<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let pose = py.detach(|| self.session().with_dependent(|_, operated| operated.arm.tool_in_world()));
+        let rows = pose.to_rows();
+        shaped(&PyArray1::from_vec(py, [rows.as_flattened(), &[0.0, 0.0, 0.0, 1.0]].concat()), [4, 4])
+    }
+
+    /// Make a step of `period_s` towards a pose of the hand.
+    ///
+    /// Parameters
+    /// ----------
+    /// pose
+    ///     The pose of the tool centre point in the world that the hand wants: a 4x4 array, `(xyz, quaternion xyzw)`, or
+    ///     `(xyz, rotation)`; `None`: the enabling switch is not pressed, and the arm stands.
+    /// speed_override
+    ///     The override of the monitor, 0 to 1.
+    ///
+    /// Returns
+    /// -------
+    /// GuidedStep
+    #[pyo3(signature = (pose, *, speed_override=1.0))]
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        pose: Option<&Bound<'py, PyAny>>,
+        speed_override: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (wanted, allowed) = (pose.map(pose_of).transpose()?, share(speed_override)?);
+        let mut steps = Steps::default();
+        py.detach(|| self.advance(&mut self.session(), wanted.as_ref(), allowed, &mut steps));
+        steps.told(py, self.joints())?.getattr("_only")?.call0()
+    }
+
+    /// Make a step for each pose.
+    ///
+    /// An interrupted call leaves the arm where it was interrupted.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses
+    ///     `(N, 7)`: x, y, z in metres, and the quaternion x, y, z, w, of the tool centre point in the world.
+    /// speed_override
+    ///     The override of the monitor, 0 to 1.
+    /// progress
+    ///     Whether to say on standard error how much is done.
+    ///
+    /// Returns
+    /// -------
+    /// Guidance
+    #[pyo3(signature = (poses, *, speed_override=1.0, progress=false))]
+    fn follow<'py>(
+        &self,
+        poses: &Bound<'py, PyAny>,
+        speed_override: f64,
+        progress: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (py, allowed) = (poses.py(), share(speed_override)?);
+        let wanted = || "(N, 7), float64: x, y, z, quaternion x, y, z, w".to_owned();
+        let rows = Rows::of_width(poses, "poses", 7, &wanted)?;
+        let values = rows.all()?;
+        let poses = values.chunks_exact(7).enumerate().map(|(number, row)| pose(number, row));
+        let poses = poses.collect::<Result<Vec<Pose>, Fault>>()?;
+        let progress = Progress::new(py, progress, poses.len(), "steps")?;
+        let mut steps = Steps::default();
+        for part in poses.chunks(BETWEEN_SIGNALS) {
+            py.detach(|| {
+                let mut session = self.session();
+                for wanted in part {
+                    self.advance(&mut session, Some(wanted), allowed, &mut steps);
+                }
+            });
+            progress.add(py, part.len())?;
+            py.check_signals()?;
+        }
+        progress.end(py)?;
+        steps.told(py, self.joints())
+    }
+
+    /// Begin anew: the arm is at its start.
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| {
+            let (session, _) = Self::begin(&self.cell, self.operator)?;
+            *self.session() = session;
+            Ok::<(), Fault>(())
+        })?;
+        Ok(())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("GuidedArm({:?} by {:?})", self.robot(), self.operator().name)
+    }
+
+    #[expect(clippy::unused_self, reason = "a method of Python")]
+    fn __reduce__(&self) -> PyResult<()> {
+        let text = "a guided arm has a state, so it is not copied\n  write: GuidedArm(cell) in each process";
+        Err(Fault::Argument(text.into()).into())
+    }
+}
+
+/// The pose of a row of seven values.
+fn pose(number: usize, row: &[f64]) -> Result<Pose, Fault> {
+    let rotation = Rotation::from_quaternion_xyzw([row[3], row[4], row[5], row[6]]);
+    let rotation = rotation.ok_or_else(|| {
+        Fault::Array(format!("`poses`: row {number} has a quaternion of length 0\n  write: one of length 1"))
+    })?;
+    Ok(Pose::new(rotation, Vec3::new(row[0], row[1], row[2])))
+}
