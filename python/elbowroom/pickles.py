@@ -22,7 +22,7 @@ def checksum(path: Path) -> str:
     try:
         return hashlib.sha256(Path(path).read_bytes()).hexdigest()
     except OSError as error:
-        hint = "the same file at the same path wherever the object is pickled or loaded; a Scene has one once it is saved"
+        hint = "the same file at the same path wherever the object is pickled or loaded; that of a Scene lasts once it is saved"
         raise FileError(f"{path}: cannot be read: {error}\n  write: {hint}", str(path), None, str(error), hint) from error
 
 

@@ -228,9 +228,9 @@ class Trace:
     q
         `(N, dof)`, rad or m.
     qd
-        `(N, dof)`: joint velocities, as the monitor was told.
+        `(N, dof)`, rad/s or m/s: joint velocities, as the monitor was told.
     intent
-        `(N, dof)`: joint velocities that the program wants at override 1.
+        `(N, dof)`, rad/s or m/s: joint velocities that the program wants at override 1.
     tcp_m
         `(N, 3)`: the tool centre point in the world.
     speed_override
@@ -433,10 +433,7 @@ class JointMap:
         -------
         JointMap
         """
-        places = {} if objects is None else objects
-        if not isinstance(places, Mapping):
-            raise ArgumentError(f"`objects` is a {type(places).__name__}\n  write: {{\"name\": pose}}")
-        return self._prepared().moved(dict(places), spheres)
+        return self._prepared().moved({} if objects is None else objects, spheres)
 
     @property
     def blocked(self) -> int:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import tempfile
+import weakref
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -162,29 +164,39 @@ class Scene:
     def cell(self) -> Cell:
         """Return the scene as a cell.
 
-        It is not changed by what is added later. It has no file, so it cannot be pickled; `save` returns one that can.
+        It is not changed by what is added later. Its file is a temporary one, which exists as long as the cell does: for pickles that
+        are to last, and for other machines, `save` it.
 
         Raises
         ------
         FileError
             What is wrong with a table, and what to write instead.
         """
-        with tempfile.TemporaryDirectory(prefix="elbowroom-") as folder:
-            path = Path(folder).resolve() / "scene.toml"
-            try:
-                return self.save(path)
-            except FileError as error:
-                if error.file != str(path) or error.line is None:
-                    raise
-                line = path.read_text(encoding="utf-8").splitlines()[error.line - 1]
-                text = f"scene, `{line}`: {error.message}" + (f"\n  write: {error.hint}" if error.hint else "")
-                raise FileError(text, "scene", None, error.message, error.hint) from None
+        folder = Path(tempfile.mkdtemp(prefix="elbowroom-")).resolve()
+        try:
+            cell = self._loaded(folder / "scene.toml")
+        except BaseException:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        weakref.finalize(cell, shutil.rmtree, folder, ignore_errors=True)
+        return cell
 
     def save(self, file: str | os.PathLike[str]) -> Cell:
         """Write the cell file, with a file beside it for each mesh that has none, and return the cell."""
         path = Path(file).resolve()
         path.write_text(self._text(path), encoding="utf-8")
         return Cell.load(path)
+
+    def _loaded(self, path: Path) -> Cell:
+        """Save and load a temporary file, of whose line an error has the text."""
+        try:
+            return self.save(path)
+        except FileError as error:
+            if error.file != str(path) or error.line is None:
+                raise
+            line = path.read_text(encoding="utf-8").splitlines()[error.line - 1]
+            text = f"scene, `{line}`: {error.message}" + (f"\n  write: {error.hint}" if error.hint else "")
+            raise FileError(text, "scene", None, error.message, error.hint) from None
 
     def page(self) -> str:
         """Return the scene as an HTML page that needs no network."""

@@ -7,6 +7,7 @@ import signal
 import threading
 import time
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -58,8 +59,12 @@ def test_a_path_leads_around_an_object_that_has_moved() -> None:
     # The object is back in its place in the next request, and on the page where it was.
     assert planner.plan([-1, 0], [1, 0]).cost_rad == straight.cost_rad
     assert around.page() != straight.page() and "ball" in around.page()
+    # Any mapping will do.
+    assert (planner.plan([-1, 0], [1, 0], objects=MappingProxyType({"ball": moved})).q == around.q).all()
     with pytest.raises(er.ArgumentError, match='no object "bal"\n  write: .*ball'):
         planner.plan([-1, 0], [1, 0], objects={"bal": moved})
+    with pytest.raises(er.ArgumentError, match="`objects` is a list"):
+        planner.plan([-1, 0], [1, 0], objects=["ball"])  # type: ignore[arg-type]
 
 
 def test_a_pose_is_reached_also_on_a_straight_line(rx60b: Path) -> None:
@@ -96,6 +101,47 @@ def test_ctrl_c_ends_a_search(exchange: Path) -> None:
     finally:
         signal.signal(signal.SIGINT, before)
     assert planner.plan(START, GOAL)
+
+
+def test_ctrl_c_ends_a_call_that_waits_for_another_thread(exchange: Path) -> None:
+    planner = er.Planner(er.Cell.load(exchange), "left")
+    expected = planner.plan(START, GOAL)
+    took_s: list[float] = []
+
+    def search() -> None:
+        begin = time.monotonic()
+        assert planner.plan(START, GOAL, optimize=True, time_limit_s=3)
+        took_s.append(time.monotonic() - begin)
+
+    searching = threading.Thread(target=search)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        searching.start()
+        time.sleep(0.3)
+        threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
+        begin = time.monotonic()
+        with pytest.raises(KeyboardInterrupt):
+            planner.plan(START, GOAL)
+        waited = time.monotonic() - begin
+    finally:
+        signal.signal(signal.SIGINT, before)
+        searching.join()
+    # The search of the other thread was not ended.
+    assert waited < 2.0 and took_s[0] > 2.9
+    assert (planner.plan(START, GOAL).q == expected.q).all()
+
+
+def test_threads_take_turns(exchange: Path) -> None:
+    planner = er.Planner(er.Cell.load(exchange), "left")
+    goals = [[angle, 0.9, 0.2, 0, 0.8, 0] for angle in (-1.0, -0.9, 0.9, 1.1)]
+    expected = [planner.plan(START, goal) for goal in goals]
+    found: dict[int, er.Path] = {}
+    threads = [threading.Thread(target=lambda n=n: found.update({n: planner.plan(START, goals[n])})) for n in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all((found[n].q == expected[n].q).all() for n in range(4))
 
 
 @pytest.mark.parametrize(

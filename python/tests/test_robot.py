@@ -86,7 +86,7 @@ def test_unknown_links_and_files_teach(rx60b: Path, tmp_path: Path) -> None:
     q = np.zeros((1, 6))
     with pytest.raises(er.ArgumentError, match='no link "link_44"\n  write: '):
         robot.fk(q, "link_44")
-    with pytest.raises(er.ArgumentError, match="three finite numbers"):
+    with pytest.raises(er.ArgumentError, match="3 finite numbers: x, y, z"):
         robot.jacobian(q, point=[0.0, np.inf, 0.0])
     with pytest.raises(er.ArgumentError, match="`ft` is no unit"):
         er.Robot.load(rx60b, unit="ft")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import pickle
 from collections.abc import Callable
 from pathlib import Path
@@ -96,8 +97,26 @@ def test_a_saved_scene_is_a_cell_file_that_moves_with_its_meshes(tmp_path: Path,
     tmp_path.rename(other)
     assert (er.Checker(er.Cell.load(other / "cell.toml")).distance(q) == expected).all()
     other.rename(tmp_path)
+
+
+def test_the_file_of_a_cell_that_was_not_saved_exists_as_long_as_the_cell() -> None:
+    scene = an_arm()
+    scene.add_mesh("part", CUBE, ([0.6, 0, 0.5], [0, 0, 0, 1]))
+    cell = scene.cell()
+    q = np.zeros((1, 2))
+    pickled = pickle.dumps(cell)
+    assert (er.Checker(pickle.loads(pickled)).distance(q) == er.Checker(cell).distance(q)).all()
+    folder = cell.path.parent
+    assert sorted(file.name for file in folder.iterdir()) == ["scene.part.obj", "scene.toml"]
+    # What is refused later names a file that can be read.
+    with pytest.raises(er.FileError) as found:
+        er.Planner(cell).plan([0, 0], [9, 9])
+    assert Path(found.value.file).is_file()
+    del cell
+    gc.collect()
+    assert not folder.exists()
     with pytest.raises(er.FileError, match="cannot be read"):
-        pickle.loads(pickle.dumps(scene.cell()))
+        pickle.loads(pickled)
 
 
 def test_what_has_no_place_in_a_scene_teaches() -> None:

@@ -3,18 +3,22 @@
 use std::time::{Duration, Instant};
 
 use crate::common::{ARM, HEAD, parse, rail};
+use crate::plan::tcp;
+use elbowroom_cell::Cell;
 use elbowroom_planner::{Interrupt, RrtConnectSettings};
-use elbowroom_query::plan::{PathAnswer, PathPlanner, PathQuery, PathRequest, plan};
-use elbowroom_robot::ObjectId;
+use elbowroom_query::plan::{PathAnswer, PathGoal, PathPlanner, PathQuery, PathRequest, TcpMotion, plan};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_scene::Attachment;
 use elbowroom_spatial::{Pose, Vec3};
 
 const HERE: [f64; 6] = [-0.8, -0.9, 0.3, 0.0, 0.5, 0.0];
 const THERE: [f64; 6] = [0.8, -0.9, 0.3, 0.0, 0.5, 0.0];
 
 /// An arm, a head on a rail, a post between the ends of the path, and a map of three joints.
-fn cell() -> elbowroom_cell::Cell {
+fn cell() -> Cell {
     let other = rail("ball", 0.0).replace("at = [0, 0, 0]", "at = [0, 0, 1050]") + "start = [-2000]\n";
-    let post = "[object.post]\nshape = \"box\"\nat = [1100, 0, 500]\nsize = [100, 100, 1600]\n";
+    let post = "[object.post]\nshape = \"box\"\nat = [1100, 0, 500]\nsize = [100, 100, 1600]\n\
+                [object.part]\nshape = \"sphere\"\nat = [0, 3000, 0]\nradius = 60\n";
     let map = "[map.arm]\njoints = [\"joint_1\", \"joint_2\", \"joint_3\"]\nstep = 5\n";
     parse(&format!("{HEAD}[robot.arm]\n{ARM}{other}{post}{map}"))
 }
@@ -26,7 +30,18 @@ fn request(robot: &str, from: &[f64], to: &[f64]) -> PathRequest {
     PathRequest { robot: Some(robot.into()), from: Some(from.into()), to: to.into(), options, ..PathRequest::default() }
 }
 
-fn requests() -> Vec<PathRequest> {
+/// The part at the flange, some of it beyond the tool centre point.
+fn carried(cell: &Cell, beyond_m: f64) -> Vec<(ObjectId, Attachment)> {
+    let robot = &cell.robots[0];
+    let in_link = Pose::from_translation(Vec3::new(0.0, 0.0, beyond_m));
+    let touch_links = robot.robot.links_with_colliders().collect();
+    let held = Attachment { robot: RobotId(0), link: robot.flange, in_link, touch_links, visiting_links: Vec::new() };
+    vec![(ObjectId(1), held)]
+}
+
+fn requests(cell: &Cell) -> Vec<PathRequest> {
+    let here = tcp(cell, &HERE);
+    let down = PathGoal::Tcp(Pose { translation: here.translation + Vec3::new(0.0, 0.1, -0.1), ..here }.into());
     let go = request("arm", &HERE, &THERE);
     let clear = RrtConnectSettings { clearance_m: 0.01, seed: 5, ..go.options };
     let aside = Pose::from_translation(Vec3::new(1.1, 1.6, 0.5));
@@ -38,6 +53,10 @@ fn requests() -> Vec<PathRequest> {
         PathRequest { speed: 0.5, period_s: Some(0.02), ..go.clone() },
         request("ball", &[-2.0], &[-1.6]),
         request("arm", &THERE, &HERE),
+        PathRequest { to: down.clone(), ..go.clone() },
+        PathRequest { to: down, tcp_motion: TcpMotion::Linear, ..go.clone() },
+        PathRequest { carried: carried(cell, 0.2), ..go.clone() },
+        PathRequest { carried: carried(cell, 0.5), ..go.clone() },
     ]
 }
 
@@ -53,7 +72,8 @@ fn lasting(answer: PathAnswer) -> PathAnswer {
 
 #[test]
 fn an_answer_does_not_depend_on_what_was_asked_before() {
-    let (cell, requests) = (cell(), requests());
+    let cell = cell();
+    let requests = requests(&cell);
     let alone: Vec<PathAnswer> = requests.iter().map(|request| lasting(plan(&cell, request).unwrap())).collect();
     let reasons: Vec<_> = alone.iter().filter_map(|answer| answer.reason.as_deref()).collect();
     assert!(reasons.is_empty(), "{reasons:?}");
@@ -61,7 +81,7 @@ fn an_answer_does_not_depend_on_what_was_asked_before() {
     let length = |i: usize| alone[i].timed.as_ref().unwrap().path.length_rad;
     assert!(length(0) > length(2) + 0.1 && length(1) > length(2) + 0.1);
     let mut query = PathQuery::new(&cell).unwrap();
-    let order = [0, 1, 2, 3, 4, 5, 6, 5, 1, 0, 2, 0, 3, 6, 4, 1];
+    let order = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 9, 0, 5, 10, 1, 8, 0, 2, 3, 7, 6, 4, 10, 1, 3, 9];
     for i in order {
         assert!(lasting(query.plan(&requests[i]).unwrap()) == alone[i], "request {i}");
     }

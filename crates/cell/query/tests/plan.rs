@@ -136,7 +136,7 @@ fn an_optimized_path_is_free_and_no_longer_than_the_first() {
 }
 
 /// The TCP of the first robot.
-fn tcp(cell: &Cell, q: &[f64]) -> Pose {
+pub fn tcp(cell: &Cell, q: &[f64]) -> Pose {
     let robot = &cell.robots[0];
     let mut state = ChainState::new(&robot.robot.chain);
     state.q.copy_from_slice(q);

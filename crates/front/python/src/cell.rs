@@ -19,7 +19,7 @@ use crate::{joint_map, page};
 /// >>> cell = er.Cell.load("examples/figure12/cell.toml")
 /// >>> cell.robots
 /// ['ns16']
-#[pyclass(module = "elbowroom", frozen)]
+#[pyclass(module = "elbowroom", frozen, weakref)]
 pub struct Cell {
     pub(crate) model: Arc<Model>,
     path: PathBuf,

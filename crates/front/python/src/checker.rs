@@ -157,8 +157,8 @@ impl Checker {
     }
 }
 
-/// Runs work while other threads of Python run; its argument takes how many rows are done, and says whether to go on, because
-/// no signal has arrived.
+/// Runs work while other threads of Python run. The work calls its argument with the number of rows that it has done, and ends if
+/// the answer is false: then a signal has arrived.
 fn interruptible(
     py: Python<'_>,
     progress: &Progress,

@@ -1,6 +1,6 @@
 //! An arm that a person guides, step by step.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use elbowroom::cell::{Cell as Model, CellOperator, OperatedArm};
 use elbowroom::formats::suggest;
@@ -19,7 +19,7 @@ use crate::progress::Progress;
 use crate::robot::pose_of;
 use crate::rows::shaped;
 
-/// Steps between two looks at the signals: a step takes a few milliseconds at most.
+/// Steps between two checks whether a signal has arrived: a step takes a few milliseconds at most.
 const BETWEEN_SIGNALS: usize = 16;
 
 /// A cell with its scene.
@@ -105,8 +105,12 @@ impl GuidedArm {
     }
 
     /// The session, for one thread at a time. Call it only where other threads of Python may run, which may hold it.
-    fn session(&self) -> MutexGuard<'_, Session> {
-        self.session.lock().unwrap_or_else(PoisonError::into_inner)
+    fn session(&self) -> Result<MutexGuard<'_, Session>, Fault> {
+        let broken = |_| {
+            let text = "a step of this arm has failed, and where the arm is now is not known\n  write: arm.reset()";
+            Fault::Argument(text.into())
+        };
+        self.session.lock().map_err(broken)
     }
 
     fn operator(&self) -> &CellOperator {
@@ -163,7 +167,10 @@ fn word(limit: ArmLimit) -> &'static str {
     match limit {
         ArmLimit::Tool(Limit::Surface) => "surface",
         ArmLimit::Tool(Limit::Entry) => "entry",
-        ArmLimit::Tool(_) | ArmLimit::Unproven => "unproven",
+        ArmLimit::Tool(Limit::Proof) | ArmLimit::Unproven => "unproven",
+        ArmLimit::Tool(Limit::PoseNotFinite) => "pose",
+        ArmLimit::Tool(Limit::StepDuration) => "tick too long",
+        ArmLimit::Tool(Limit::DistanceUnknown) => "distance unknown",
         ArmLimit::Reach => "reach",
         ArmLimit::JointSpeed(_) => "joint speed",
         ArmLimit::Contact(..) => "contact",
@@ -233,15 +240,17 @@ impl GuidedArm {
 
     /// The joint values, `(dof,)`, rad or m.
     #[getter]
-    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let q = py.detach(|| self.session().with_dependent(|_, operated| operated.arm.q().to_vec()));
-        PyArray1::from_vec(py, q)
+    fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let q =
+            py.detach(|| Ok::<_, Fault>(self.session()?.with_dependent(|_, operated| operated.arm.q().to_vec())))?;
+        Ok(PyArray1::from_vec(py, q))
     }
 
     /// The pose of the tool centre point in the world, `(4, 4)`.
     #[getter]
     fn tool<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let pose = py.detach(|| self.session().with_dependent(|_, operated| operated.arm.tool_in_world()));
+        let pose =
+            py.detach(|| Ok::<_, Fault>(self.session()?.with_dependent(|_, operated| operated.arm.tool_in_world())))?;
         let rows = pose.to_rows();
         shaped(&PyArray1::from_vec(py, [rows.as_flattened(), &[0.0, 0.0, 0.0, 1.0]].concat()), [4, 4])
     }
@@ -252,7 +261,7 @@ impl GuidedArm {
     /// ----------
     /// pose
     ///     The pose of the tool centre point in the world that the hand wants: a 4x4 array, `(xyz, quaternion xyzw)`, or
-    ///     `(xyz, rotation)`; `None`: the enabling switch is not pressed, and the arm stands.
+    ///     `(xyz, rotation)`; `None`: the enabling switch is not pressed, and the arm comes to rest.
     /// speed_override
     ///     The override of the monitor, 0 to 1.
     ///
@@ -268,7 +277,10 @@ impl GuidedArm {
     ) -> PyResult<Bound<'py, PyAny>> {
         let (wanted, allowed) = (pose.map(pose_of).transpose()?, share(speed_override)?);
         let mut steps = Steps::default();
-        py.detach(|| self.advance(&mut self.session(), wanted.as_ref(), allowed, &mut steps));
+        py.detach(|| {
+            self.advance(&mut *self.session()?, wanted.as_ref(), allowed, &mut steps);
+            Ok::<(), Fault>(())
+        })?;
         steps.told(py, self.joints())?.getattr("_only")?.call0()
     }
 
@@ -305,11 +317,12 @@ impl GuidedArm {
         let mut steps = Steps::default();
         for part in poses.chunks(BETWEEN_SIGNALS) {
             py.detach(|| {
-                let mut session = self.session();
+                let mut session = self.session()?;
                 for wanted in part {
                     self.advance(&mut session, Some(wanted), allowed, &mut steps);
                 }
-            });
+                Ok::<(), Fault>(())
+            })?;
             progress.add(py, part.len())?;
             py.check_signals()?;
         }
@@ -321,7 +334,8 @@ impl GuidedArm {
     fn reset(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| {
             let (session, _) = Self::begin(&self.cell, self.operator)?;
-            *self.session() = session;
+            self.session.clear_poison();
+            *self.session()? = session;
             Ok::<(), Fault>(())
         })?;
         Ok(())

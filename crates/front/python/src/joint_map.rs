@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{CHUNK, Rows};
 use crate::error::Fault;
-use crate::places::{Places, objects_at};
+use crate::places::objects_at;
 use crate::progress::Progress;
 
 /// A robot that is prepared for maps, and the cells that each obstacle blocks; `elbowroom.results.JointMap` has it.
@@ -91,7 +91,7 @@ impl MapRecord {
     fn moved<'py>(
         &self,
         py: Python<'py>,
-        objects: Places<'py>,
+        objects: &Bound<'py, PyAny>,
         spheres: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let places = objects_at(self.query.cell(), objects)?;

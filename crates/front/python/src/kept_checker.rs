@@ -1,6 +1,6 @@
 //! Checkers that stay from one call to the next, for calls of a few rows: to make one takes longer than to answer a row.
 
-use std::sync::{Arc, Mutex, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, TryLockError};
 
 use elbowroom::query::{QueryChecker, QueryKind, QueryPairs, QueryRow, QueryStates};
 use elbowroom::scene::{CheckerOptions, SceneError, SceneState};
@@ -45,7 +45,8 @@ impl KeptChecker {
             Ok(kept) => kept,
             Err(TryLockError::Poisoned(poisoned)) => {
                 // Its last answer has panicked.
-                let mut kept = PoisonError::into_inner(poisoned);
+                self.0.clear_poison();
+                let mut kept = poisoned.into_inner();
                 *kept = None;
                 kept
             }

@@ -2,7 +2,8 @@
 //!
 //! `python/elbowroom` has the package around it: exceptions, type stubs, documentation. Nothing is computed here: arrays
 //! become rows of joint values, the façade answers, and the answers become arrays. While the façade works, other threads of
-//! Python run; every 65,536 rows, every block of a query and every 256 ticks, signals are looked at, so Ctrl-C ends a long call.
+//! Python run. Whether a signal has arrived is checked every 65,536 rows, every block of a query, every 256 ticks and every 20 ms of a
+//! search, so Ctrl-C ends a long call.
 //!
 //! **Invariant.** A row that is not finite, or has the wrong number of values, is an exception that names the row; no such
 //! row is ever answered. The one exception is a tick of a monitor, which answers a state that is not finite with override 0.

@@ -1,4 +1,4 @@
-//! What a checker looks at.
+//! The robots and objects of a checker.
 
 use elbowroom::cell::{OutOfReachProofs, QueryModel};
 use elbowroom::scene::{Scene, SceneState};

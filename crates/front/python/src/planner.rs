@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::time::Duration;
 
 use elbowroom::cell::Cell as Model;
@@ -19,17 +19,20 @@ use crate::cell::Cell;
 use crate::checker::signals;
 use crate::error::Fault;
 use crate::page;
-use crate::places::{Places, objects_at};
+use crate::places::objects_at;
 use crate::robot::pose_of;
 use crate::rows::shaped;
 
-/// Time between two looks at the signals.
+/// Time between two checks whether a signal has arrived.
 const BETWEEN_SIGNALS: Duration = Duration::from_millis(20);
+/// Time between two tries to have the query, which another thread uses.
+const BETWEEN_TRIES: Duration = Duration::from_millis(1);
 
 /// Paths of a robot without collision.
 ///
 /// Obstacles are the objects, the other robots at their start and the robot itself; guarded volumes stay out of permanent
-/// forbidden regions. The scene, and sphere covers of the robot, are built once. Threads that share a planner take turns.
+/// forbidden regions. The scene, and the sphere covers or the map of the robot, are built when they are first needed, and kept.
+/// Threads that share a planner take turns.
 ///
 /// Parameters
 /// ----------
@@ -76,9 +79,10 @@ impl Planner {
             std::thread::scope(|threads| {
                 let (tell, told) = channel();
                 threads.spawn(|| {
-                    let mut query = self.query.lock().unwrap_or_else(PoisonError::into_inner);
-                    // The receiver is there until the answer is.
-                    let _ = tell.send(query.plan_with(request, &interrupt));
+                    if let Some(mut query) = self.query(&interrupt) {
+                        // The receiver is there until the answer is.
+                        let _ = tell.send(query.plan_with(request, &interrupt));
+                    }
                     drop(tell);
                 });
                 loop {
@@ -101,6 +105,19 @@ impl Planner {
             // The scope has raised the panic of the thread.
             (None, None) => Err(Fault::Argument("the search ended without an answer".into())),
         }
+    }
+
+    /// The query, for one thread at a time; `None` if the call was interrupted while another thread searched.
+    fn query(&self, interrupt: &Interrupt) -> Option<MutexGuard<'_, PathQuery<Arc<Model>>>> {
+        while !interrupt.is_set() {
+            match self.query.try_lock() {
+                Ok(query) => return Some(query),
+                // Its answers do not depend on what a search has left.
+                Err(TryLockError::Poisoned(poisoned)) => return Some(poisoned.into_inner()),
+                Err(TryLockError::WouldBlock) => std::thread::sleep(BETWEEN_TRIES),
+            }
+        }
+        None
     }
 
     /// The goal of a request: joint values or a pose.
@@ -148,7 +165,9 @@ impl Planner {
         self.joints.clone()
     }
 
-    /// Find a path between two states, and time it. Ctrl-C ends the search.
+    /// Find a path between two states, and time it.
+    ///
+    /// Ctrl-C ends the search; covers and maps that the first call builds are built to their end before.
     ///
     /// Parameters
     /// ----------
@@ -191,7 +210,7 @@ impl Planner {
         q1: Option<&Bound<'py, PyAny>>,
         pose: Option<&Bound<'py, PyAny>>,
         linear: bool,
-        objects: Option<Places<'py>>,
+        objects: Option<&Bound<'py, PyAny>>,
         speed: f64,
         time_limit_s: f64,
         seed: u64,

@@ -54,6 +54,11 @@ impl Deadline {
         self.interrupt.is_set() || Instant::now() >= self.at
     }
 
+    /// Whether another thread has ended the search.
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupt.is_set()
+    }
+
     /// The time that is left.
     pub fn left(&self) -> Duration {
         self.at.saturating_duration_since(Instant::now())

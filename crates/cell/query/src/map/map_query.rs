@@ -110,8 +110,7 @@ impl<C: Borrow<Cell>> MapQuery<C> {
         filled.map(|filled| filled.blocks).map_err(|e| self.refused(&e))
     }
 
-    /// The cells that solids block which are no objects of the cell, such as those that a sensor sees, at their poses in the
-    /// world. Every link must keep clear of them.
+    /// The cells that other solids block, at their poses in the world: what a sensor sees, for example. No link may touch them.
     ///
     /// # Errors
     /// As for [`cells_of`](Self::cells_of).
@@ -126,33 +125,34 @@ impl<C: Borrow<Cell>> MapQuery<C> {
         blocked_cells::union(&self.axes, all)
     }
 
-    /// Computes the map of all objects at their initial poses; of the request its model and its deadline are used.
+    /// Computes the map of all objects at their initial poses. The deadline is [`MapRequest::deadline`], from the call on.
     ///
     /// # Errors
     /// As for [`map`](super::map()).
     pub fn map(
         &self,
-        request: &MapRequest,
+        model: MapModel,
+        deadline: Option<Duration>,
         progress: &(dyn Fn(MapProgress<'_>) + Sync),
     ) -> Result<CellMap, Diagnostic> {
         let cell = self.cell.borrow();
-        let filled = self.fill(request, progress)?.map_err(|e| self.refused(&e))?;
+        let filled = self.fill(model, deadline, progress)?.map_err(|e| self.refused(&e))?;
         let obstacle = |(object, filled): (&Object, FilledCells)| {
             let FilledCells { blocks, time, spheres } = filled;
-            MapObstacle { name: object.name.clone(), model: request.model, spheres, blocks, time }
+            MapObstacle { name: object.name.clone(), model, spheres, blocks, time }
         };
         let obstacles: Vec<MapObstacle> = cell.objects.iter().zip(filled).map(obstacle).collect();
         let moves = |o: ObjectId| cell.moving_objects.iter().any(|m| m.object == o);
         let dense = self.union(obstacles.iter().map(|o| &o.blocks));
-        let blocked = self.count(dense.as_ref(), request.model, progress, &|_| true)?;
+        let blocked = self.count(dense.as_ref(), model, progress, &|_| true)?;
         let static_blocked = if cell.moving_objects.is_empty() {
             blocked
         } else {
             let fixed = obstacles.iter().enumerate().filter(|o| !moves(ObjectId(o.0))).map(|o| &o.1.blocks);
-            self.count(self.union(fixed).as_ref(), request.model, progress, &|o| !moves(o))?
+            self.count(self.union(fixed).as_ref(), model, progress, &|o| !moves(o))?
         };
         let robot = self.robot();
-        let notes = notes(cell, robot, self.spec.line, request.model);
+        let notes = notes(cell, robot, self.spec.line, model);
         let warnings = self.warnings.iter().cloned().chain(notes).collect();
         let (robot, axes, is_angle) = (robot.name.clone(), self.axes.clone(), self.is_angle.clone());
         Ok(CellMap { robot, axes, is_angle, obstacles, blocked, static_blocked, dense, warnings })
@@ -193,7 +193,8 @@ impl<C: Borrow<Cell>> MapQuery<C> {
     /// The cells that each object blocks. The outer error means that this map or model does not suit the request.
     fn fill(
         &self,
-        request: &MapRequest,
+        model: MapModel,
+        deadline: Option<Duration>,
         progress: &(dyn Fn(MapProgress<'_>) + Sync),
     ) -> Result<Result<Vec<FilledCells>, RobotMapError>, Diagnostic> {
         let every_link = || {
@@ -202,7 +203,7 @@ impl<C: Borrow<Cell>> MapQuery<C> {
                 self.wrong(what, "--model exact, without --deadline")
             })
         };
-        match (request.model, request.deadline) {
+        match (model, deadline) {
             (MapModel::Solids(model), None) => Ok(self.fill_each(model, progress)),
             (MapModel::Seeds, None) => self.expand_each(every_link()?, progress),
             (model, Some(limit)) => self.fill_until(every_link()?, model, limit),

@@ -63,5 +63,5 @@ pub fn map_with(
     request: &MapRequest,
     progress: &(dyn Fn(MapProgress<'_>) + Sync),
 ) -> Result<CellMap, Diagnostic> {
-    MapQuery::new(cell, request, progress)?.map(request, progress)
+    MapQuery::new(cell, request, progress)?.map(request.model, request.deadline, progress)
 }

@@ -36,6 +36,7 @@ pub struct MapPlanner {
     mapped: MappedJoints,
     /// Values of all joints. Joints that are not in the map keep their values.
     held: Vec<f64>,
+    clearance_m: f64,
     maps: LinkMaps,
     /// Per object of the cell: its last pose, and the cells that it blocks there.
     known: Vec<Option<(Pose, BlockedCells)>>,
@@ -95,12 +96,20 @@ impl MapPlanner {
         let maps = maps.map_err(|e| wrong(e.to_string()))?;
         let empty = OccupancyBitmap::new(mapped.grid.shape());
         let planner = GridPlanner::new(&mapped.grid, &empty).map_err(|e| wrong(e.to_string()))?;
-        Ok(Self { robot: id, mapped, held: held.to_vec(), maps, known: vec![None; cell.objects.len()], planner })
+        let (held, known) = (held.to_vec(), vec![None; cell.objects.len()]);
+        Ok(Self { robot: id, mapped, held, clearance_m, maps, known, planner })
     }
 
     /// Whether the joints that are not in the map have their held values in `q` (values of all joints).
     pub fn serves(&self, q: &[f64]) -> bool {
         self.mapped.moved_otherwise(&self.held, q).is_none()
+    }
+
+    /// Whether a new planner for a robot, these values of its joints and this clearance (m) would be the same.
+    pub(super) fn is_of(&self, id: RobotId, q: &[f64], clearance_m: f64) -> bool {
+        let held =
+            |q: &[f64]| (0..q.len()).filter(|j| !self.mapped.joints.contains(j)).map(|j| q[j]).collect::<Vec<_>>();
+        self.robot == id && self.clearance_m == clearance_m && held(q) == held(&self.held)
     }
 
     /// Updates the obstacles: the objects of the cell, which come first in the scene, and `others`, each with its pose

@@ -15,6 +15,9 @@ use super::request_validation::planner_error;
 use super::search::Search;
 use crate::map::mapped_joints::MappedJoints;
 
+/// Most planners that are kept; then the one goes that was not used for the longest time.
+const MOST_KEPT: usize = 4;
+
 /// A path for one robot on its map.
 pub(super) struct MapSearch<'q> {
     pub cell: &'q Cell,
@@ -25,19 +28,43 @@ pub(super) struct MapSearch<'q> {
     pub regions: &'q [String],
 }
 
+/// Planners on maps that are kept for other requests.
+#[derive(Debug, Default)]
+pub(super) struct MapPlanners(Vec<MapPlanner>);
+
+impl MapPlanners {
+    /// The planner for a robot with these values of the joints that are not in its map.
+    fn serving(
+        &mut self,
+        cell: &Cell,
+        id: RobotId,
+        q: &[f64],
+        clearance_m: f64,
+    ) -> Result<&mut MapPlanner, Diagnostic> {
+        let known = self.0.iter().position(|planner| planner.is_of(id, q, clearance_m));
+        let planner = match known {
+            Some(at) => self.0.remove(at),
+            None => MapPlanner::new(cell, id, q, clearance_m)?,
+        };
+        self.0.truncate(MOST_KEPT - 1);
+        self.0.insert(0, planner);
+        Ok(&mut self.0[0])
+    }
+}
+
 impl MapSearch<'_> {
     /// Plans a path to the first goal that is reached, or states why the first goal is not reached.
     ///
     /// # Errors
     /// [`Diagnostic`] if the request moves other joints than those of the map, or if the start or all goals are in
     /// collision or beyond limits.
-    pub fn plan(&self, mut exact: RrtConnect<'_>) -> Result<PathAnswer, Diagnostic> {
+    pub fn plan(&self, mut exact: RrtConnect<'_>, kept: &mut MapPlanners) -> Result<PathAnswer, Diagnostic> {
         let robot = &self.cell.robots[self.id.0];
         let Search { scene, state, settings, limits, period_s, .. } = &self.search;
         let goals = self.goals(robot)?;
         let goals = self.free_goals(goals, &mut exact)?;
         let begin = Instant::now();
-        let mut planner = MapPlanner::new(self.cell, self.id, state.q(self.id), settings.clearance_m)?;
+        let planner = kept.serving(self.cell, self.id, state.q(self.id), settings.clearance_m)?;
         planner
             .update(scene, state, &[])
             .map_err(|e| Diagnostic::new(&self.cell.file, robot.line, format!("robot \"{}\": {e}", robot.name)))?;

@@ -14,7 +14,7 @@ use elbowroom_scene::{Scene, SceneError, SceneState};
 
 use super::answer::PathAnswer;
 use super::map_planner::PURPOSE;
-use super::on_map::MapSearch;
+use super::on_map::{MapPlanners, MapSearch};
 use super::path_goal::{PathGoal, goals};
 use super::path_request::PathRequest;
 use super::point_path::PointPath;
@@ -23,9 +23,10 @@ use super::{request_validation, tcp_motion};
 use crate::cover_cache::CoverCache;
 use crate::map::mapped_joints::MappedJoints;
 
-/// Searches paths in a cell, with one scene and one set of sphere covers for all of them.
+/// Searches paths in a cell, with one scene, and the sphere covers and the maps of its robots, for all of them.
 ///
-/// Both are built once, which takes longer than most searches. An answer is the same whatever was asked before.
+/// They are built when they are first needed, which takes longer than most searches. An answer is the same whatever was asked
+/// before.
 ///
 /// ```
 /// use elbowroom_cell::Cell;
@@ -49,6 +50,7 @@ pub struct PathQuery<C> {
     cell: C,
     scene: Scene,
     models: CoverModels,
+    maps: MapPlanners,
     covers: CoverCache,
 }
 
@@ -59,7 +61,8 @@ impl<C: Borrow<Cell>> PathQuery<C> {
     /// A cell without a scene, such as one with a solid that is not finite.
     pub fn new(cell: C) -> Result<Self, Diagnostic> {
         let scene = QueryModel::of_cell(cell.borrow()).scene(OutOfReachProofs::Omit)?;
-        Ok(Self { cell, scene, models: CoverModels::default(), covers: CoverCache::of_user() })
+        let (models, maps) = (CoverModels::default(), MapPlanners::default());
+        Ok(Self { cell, scene, models, maps, covers: CoverCache::of_user() })
     }
 
     /// The cell.
@@ -75,7 +78,8 @@ impl<C: Borrow<Cell>> PathQuery<C> {
         self.plan_with(request, &Interrupt::default())
     }
 
-    /// Like [`plan`](Self::plan); another thread may interrupt the search, which then ends soon.
+    /// Like [`plan`](Self::plan); another thread may interrupt the search, which then ends soon: with the path that it has by
+    /// then, or with the answer that it was interrupted. What is built first is built to its end: covers, and maps.
     ///
     /// # Errors
     /// As for [`plan`](super::plan()).
@@ -115,7 +119,9 @@ impl<C: Borrow<Cell>> PathQuery<C> {
             let search =
                 Search { scene, state: &state, goals: &goals, settings, limits: &limits, period_s, optimize, line };
             let answer = match &mapped {
-                Some(mapped) => MapSearch { cell, id, mapped, search, regions: &regions }.plan(exact)?,
+                Some(mapped) => {
+                    MapSearch { cell, id, mapped, search, regions: &regions }.plan(exact, &mut self.maps)?
+                }
                 None => searched(
                     cell,
                     robot,
@@ -130,7 +136,9 @@ impl<C: Borrow<Cell>> PathQuery<C> {
             (PathGoal::Point(point), Some(timed)) => Some(PointPath::of(scene, (id, robot), point, timed)),
             _ => None,
         };
-        Ok(PathAnswer { point, ..answer })
+        let interrupted = || "the search was interrupted".to_owned();
+        let reason = answer.reason.map(|reason| if interrupt.is_set() { interrupted() } else { reason });
+        Ok(PathAnswer { reason, point, ..answer })
     }
 }
 

@@ -11,7 +11,7 @@ use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::Attachment;
 
 use super::planned_parts::{PartError, PlannedParts};
-use super::planned_paths::{PathOrigin, PlannedPaths};
+use super::planned_paths::{PathOrigin, PlannedPaths, Tooling};
 use super::program_plan::{PlanStep, ProgramPlan};
 use super::{Geometry, GripAction, Segment, TcpLine};
 
@@ -237,11 +237,9 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         planned: PlannedMove<'_>,
     ) -> Result<Arc<Playback>, Diagnostic> {
         let origin = PathOrigin {
-            robot: self.id,
+            tooling: Tooling::of(self.id, &self.robot),
             step: index,
             from: self.q.clone(),
-            flange: self.robot.flange,
-            mounted: self.robot.payload.tools.iter().map(|tool| tool.mounted).collect(),
             parts: self.parts.clone(),
         };
         let play = self.paths.known_or(origin, || self.path(index, step, planned))?;

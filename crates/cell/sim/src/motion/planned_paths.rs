@@ -48,10 +48,23 @@ pub struct PlannedPaths<'a> {
 /// A path, or the error of its search.
 type SearchedPath = Result<Arc<Playback>, Diagnostic>;
 
-/// The robot that changes its tools, its flange, and whether each tool is mounted.
-type Tooling = (RobotId, LinkId, Vec<bool>);
+/// The tools of a robot that changes them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tooling {
+    pub robot: RobotId,
+    pub flange: LinkId,
+    /// Whether each tool is mounted.
+    pub mounted: Vec<bool>,
+}
 
-/// The query of the cell in which a robot has these tools; `None`: of a robot that does not change its tools.
+impl Tooling {
+    pub fn of(id: RobotId, robot: &CellRobot) -> Self {
+        let mounted = robot.payload.tools.iter().map(|tool| tool.mounted).collect();
+        Self { robot: id, flange: robot.flange, mounted }
+    }
+}
+
+/// The query of the cell in which a robot has these tools. Robots that do not change their tools share the one with `None`.
 type ToolingQuery<'a> = (Option<Tooling>, PathQuery<Cow<'a, Cell>>);
 
 /// A search that starts.
@@ -69,12 +82,9 @@ pub struct PathSearch {
 /// parts.
 #[derive(PartialEq)]
 pub(super) struct PathOrigin<'a> {
-    pub robot: RobotId,
+    pub tooling: Tooling,
     pub step: usize,
     pub from: Vec<f64>,
-    pub flange: LinkId,
-    /// Whether each tool of the robot is mounted.
-    pub mounted: Vec<bool>,
     pub parts: PlannedParts<'a>,
 }
 
@@ -119,8 +129,7 @@ impl<'a> PlannedPaths<'a> {
         robot: &CellRobot,
         ask: impl FnOnce(&mut PathQuery<Cow<'a, Cell>>) -> Result<T, Diagnostic>,
     ) -> Result<T, Diagnostic> {
-        let tools = &robot.payload.tools;
-        let tooling = (!tools.is_empty()).then(|| (id, robot.flange, tools.iter().map(|t| t.mounted).collect()));
+        let tooling = (!robot.payload.tools.is_empty()).then(|| Tooling::of(id, robot));
         let mut queries = self.queries.borrow_mut();
         if let Some((_, query)) = queries.iter_mut().find(|(known, _)| *known == tooling) {
             return ask(query);

@@ -119,7 +119,7 @@ pub struct Sample {
     pub q: Vec<f64>,
     /// Joint velocities, rad/s or m/s, as its monitor was told without faults.
     pub qd: Vec<f64>,
-    /// Joint velocities that the program wants at override 1.
+    /// Joint velocities that the program wants at override 1, rad/s or m/s.
     pub intent: Vec<f64>,
     /// Tool centre point in the world, m.
     pub tcp: Vec3,

@@ -58,6 +58,9 @@ impl CoverRrtConnect<'_> {
         let mut follower = LineFollower::new(&chain, placed.base_in_world, line, &from);
         let mut waypoints = vec![from];
         while follower.share < 1.0 {
+            if self.exact.validator.deadline.is_interrupted() {
+                return Err(self.covers.not_found(begin.elapsed(), waypoints.len()));
+            }
             let before = &waypoints[waypoints.len() - 1];
             let percent = 100.0 * follower.share;
             let ended = |end: LinearMoveEnd| RrtConnectError::LinearMove { percent, end };
