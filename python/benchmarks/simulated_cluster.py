@@ -43,22 +43,19 @@ def main() -> None:
         machines = [cluster.add_node(**STORE) for _ in range(found.machines - 1)]
         ray.init(address=cluster.address, log_to_driver=False)
         print(f"{len(ray.nodes())} machines after {time.monotonic() - begin:.0f} s", flush=True)
-        rng, over, removed = random.Random(1), threading.Event(), 0
-
-        def change() -> None:
-            nonlocal removed
-            while not over.wait(found.seconds):
-                cluster.remove_node(machines.pop(rng.randrange(len(machines))), allow_graceful=False)
-                removed += 1
-                machines.append(cluster.add_node(**STORE))
-
-        changes = threading.Thread(target=change)
-        changes.start()
+        answers: list[sweep.Result] = []
         begin = time.monotonic()
-        result = sweep.run(task, out=Path(folder) / "cluster", executor="ray")
-        took = time.monotonic() - begin
-        over.set()
-        changes.join()
+        # Machines are added by the main thread only.
+        sweeping = threading.Thread(target=lambda: answers.append(sweep.run(task, out=Path(folder) / "cluster", executor="ray")))
+        sweeping.start()
+        rng, removed = random.Random(1), 0
+        while sweeping.is_alive():
+            sweeping.join(found.seconds)
+            if sweeping.is_alive():
+                cluster.remove_node(machines.pop(rng.randrange(len(machines))), allow_graceful=False)
+                machines.append(cluster.add_node(**STORE))
+                removed += 1
+        took, result = time.monotonic() - begin, answers[0]
         ray.shutdown()
         cluster.shutdown()
     same = "the same hash" if result.sha256 == expected.sha256 else "ANOTHER HASH"

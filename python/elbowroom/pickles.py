@@ -59,13 +59,11 @@ def files_of_robot(model: _elbowroom.Robot) -> tuple[Any, ...]:
 
 def reduced_robot(files: tuple[Any, ...]) -> _Reduced:
     """Return what a pickle of a robot has."""
-    files = tuple(Path(file).resolve() if isinstance(file, Path) else file for file in files)
     return robot, (files, checksum(files[0]))
 
 
 def reduced_cell(path: Path) -> _Reduced:
     """Return what a pickle of a cell has."""
-    path = Path(path).resolve()
     return cell, (path, checksum(path))
 
 

@@ -52,7 +52,10 @@ def matrix(pose: PoseLike) -> list[list[float]]:
     try:
         if isinstance(pose, tuple) and len(pose) == 2:
             found = np.eye(4)
-            found[:3, 3] = np.asarray(pose[0], dtype=np.float64)
+            place = np.asarray(pose[0], dtype=np.float64)
+            if place.shape != (3,):
+                raise ArrayError(f"`pose` has a place of shape {place.shape}\n  write: {_WANTED}")
+            found[:3, 3] = place
             with np.errstate(all="ignore"):
                 found[:3, :3] = _rotation(pose[1])
         else:

@@ -31,7 +31,7 @@ class Progress:
 
     def end(self) -> None:
         """End the line."""
-        if self._wanted:
+        if self._wanted and self._done:
             print(file=sys.stderr)
 
 

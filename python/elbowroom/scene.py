@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -31,12 +32,15 @@ class Scene:
     """Robots and objects at their places, without a file.
 
     `cell` makes a `Cell` of it, for checkers, planners, maps and runs; `save` writes the cell file, which regions and programs can be
-    added to. Every table of the cell file can be set here too. Lengths are metres and angles radians.
+    added to. Every table of the cell file can be set here too. Lengths are metres and angles radians. Other files are `pathlib.Path`s:
+    of the present folder, and relative to the cell file in it; text is written as it is.
 
     Parameters
     ----------
     name
         Name of the cell.
+    keys
+        Keys of the cell file outside of tables, such as `tick_ms=4` or `pairs=Path("pairs.csv")`.
 
     Examples
     --------
@@ -51,13 +55,20 @@ class Scene:
     [1.06]
     """
 
-    def __init__(self, name: str = "scene") -> None:
+    def __init__(self, name: str = "scene", **keys: Any) -> None:
         """Begin an empty scene."""
         self.name = name
+        self._keys = _own(keys)
         self._tables: dict[str, dict[str, dict[str, Any]]] = {}
 
     def add_robot(
-        self, name: str, robot: Robot | str | os.PathLike[str], base: PoseLike | None = None, **keys: Any
+        self,
+        name: str,
+        robot: Robot | str | os.PathLike[str],
+        base: PoseLike | None = None,
+        *,
+        srdf: str | os.PathLike[str] | None = None,
+        **keys: Any,
     ) -> None:
         """Add a robot.
 
@@ -69,11 +80,16 @@ class Scene:
             A `Robot`, or a file that `Robot.load` reads.
         base
             The pose of its root link in the world.
+        srdf
+            An SRDF: pairs of links that it disables are not tested. A `Robot` has its own.
         keys
             Further keys of `[robot.NAME]` in a cell file, such as `start=[0.0, 0.5, …]` or `flange="tool0"`.
         """
-        model, srdf, unit, joints = files_of_robot(robot) if isinstance(robot, Robot) else (Path(os.path.abspath(robot)), None, None, None)
-        given = {"model": model, "srdf": srdf, "unit": unit, "joints": joints}
+        if isinstance(robot, Robot):
+            model, own_srdf, unit, joints = files_of_robot(robot)
+        else:
+            model, own_srdf, unit, joints = _absolute(robot), None, None, None
+        given = {"model": model, "srdf": own_srdf if srdf is None else _absolute(srdf), "unit": unit, "joints": joints}
         table = {key: value for key, value in given.items() if value is not None}
         if base is not None:
             table["base"] = _pose(base)
@@ -118,7 +134,7 @@ class Scene:
             If `vertices` or `faces` are no such arrays.
         """
         if isinstance(mesh, str | os.PathLike):
-            self._object(name, pose, shape="mesh", mesh=Path(os.path.abspath(mesh)))
+            self._object(name, pose, shape="mesh", mesh=_absolute(mesh))
             return
         if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
             mesh = (mesh.vertices, mesh.faces)
@@ -127,27 +143,30 @@ class Scene:
         found = _Mesh(*mesh)
         self._object(name, pose, shape="mesh", mesh=found)
 
-    def add(self, table: str, name: str, /, **keys: Any) -> None:
+    def add(self, table: str, name: str | None = None, /, **keys: Any) -> None:
         """Add a table of the cell file, such as `add("region", "zone", shape="box", size=[1, 1, 1], warning=0.3)`.
 
         Parameters
         ----------
         table, name
-            The table is `[TABLE.NAME]`; one of this name is replaced.
+            The table is `[TABLE.NAME]`; one of this name is replaced. Without a name it is `[TABLE]`, such as `[monitor]`.
         keys
-            Its keys: numbers in metres, radians and seconds, text, true and false, lists, dicts.
+            Its keys: numbers in metres, radians and seconds, text, true and false, lists, dicts, paths.
         """
-        for word, what in ((table, "table"), (name, "name")):
+        for word, what in ((table, "table"), ("" if name is None else name, "name")):
             # Whoever calls may not check types.
-            if type(word) is not str or not word:
+            if type(word) is not str or not word and (what == "table" or name is not None):
                 raise ArgumentError(f"a {what} is text, and not {word!r}\n  write: add(\"object\", \"name\", …)")
-        self._tables.setdefault(table, {})[name] = dict(keys)
+        self._tables.setdefault(table, {})[name or ""] = _own(keys)
 
     def move(self, name: str, pose: PoseLike) -> None:
         """Move an object, or the base of a robot, to a pose in the world."""
         objects, robots = self._tables.get("object", {}), self._tables.get("robot", {})
         if name in objects:
-            placed = {key: value for key, value in objects[name].items() if key not in ("at", "rpy", "quaternion")}
+            given = objects[name]
+            if "from" in given:
+                raise ArgumentError(f'"{name}" lies between two points\n  write: add("object", "{name}", …) with other points')
+            placed = {key: value for key, value in given.items() if key not in ("at", "rpy", "quaternion")}
             objects[name] = placed | _pose(pose)
         elif name in robots:
             robots[name]["base"] = _pose(pose)
@@ -155,8 +174,8 @@ class Scene:
             self._unknown(name)
 
     def remove(self, name: str) -> None:
-        """Remove an object or a robot."""
-        for table in ("object", "robot"):
+        """Remove what has this name: an object or a robot, otherwise another table."""
+        for table in ("object", "robot", *self._tables):
             if self._tables.get(table, {}).pop(name, None) is not None:
                 return
         self._unknown(name)
@@ -182,9 +201,29 @@ class Scene:
         return cell
 
     def save(self, file: str | os.PathLike[str]) -> Cell:
-        """Write the cell file, with a file beside it for each mesh that has none, and return the cell."""
-        path = Path(file).resolve()
-        path.write_text(self._text(path), encoding="utf-8")
+        """Write the cell file, with a file beside it for each mesh that has none, and return the cell.
+
+        A file that is there is replaced only by one that can be loaded. Files of meshes are named after their contents.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written, or what is wrong with a table.
+        """
+        path = _absolute(file)
+        is_new = not path.exists()
+        written = path if is_new else path.with_name(f".{path.name}.new")
+        try:
+            written.write_text(self._text(path), encoding="utf-8")
+            if not is_new:
+                Cell.load(written)
+                written.replace(path)
+        except OSError as error:
+            hint = "a file in a folder that exists and can be written to"
+            raise FileError(f"{path}: cannot be written: {error}\n  write: {hint}", str(path), None, str(error), hint) from error
+        finally:
+            if not is_new:
+                written.unlink(missing_ok=True)
         return Cell.load(path)
 
     def _loaded(self, path: Path) -> Cell:
@@ -194,7 +233,7 @@ class Scene:
         except FileError as error:
             if error.file != str(path) or error.line is None:
                 raise
-            line = path.read_text(encoding="utf-8").splitlines()[error.line - 1]
+            line = path.read_text(encoding="utf-8").split("\n")[error.line - 1]
             text = f"scene, `{line}`: {error.message}" + (f"\n  write: {error.hint}" if error.hint else "")
             raise FileError(text, "scene", None, error.message, error.hint) from None
 
@@ -220,12 +259,13 @@ class Scene:
     def _text(self, path: Path) -> str:
         """Return the cell file, and write its meshes."""
         writer = _Writer(path)
-        lines = ["version = 1", f"name = {_text(self.name)}", 'units = { length = "m", angle = "rad" }', ""]
+        lines = ["version = 1", f"name = {_text(self.name)}", 'units = { length = "m", angle = "rad" }']
+        lines += [f"{_key(key)} = {writer.value(value, key)}" for key, value in self._keys.items()]
         for table, named in self._tables.items():
             for name, keys in named.items():
-                lines.append(f"[{table}.{_key(name)}]")
+                lines += ["", f"[{table}.{_key(name)}]" if name else f"[{table}]"]
                 lines += [f"{_key(key)} = {writer.value(value, name)}" for key, value in keys.items()]
-                lines.append("")
+        lines.append("")
         return "\n".join(lines)
 
 
@@ -238,13 +278,10 @@ class _Mesh:
             raise ArrayError("`vertices` has values that are not finite\n  write: finite numbers, metres")
         if corners.size and not (0 <= corners.min() and corners.max() < len(points)):
             raise ArrayError(f"`faces` has indices from {corners.min()} to {corners.max()}\n  write: 0 to {len(points) - 1}")
-        self._vertices, self._faces = points.tolist(), (corners + 1).tolist()
-
-    def write(self, file: Path) -> None:
-        """Write an OBJ file, whose numbers read back to the same bits."""
-        with file.open("w", encoding="ascii") as out:
-            out.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in self._vertices)
-            out.writelines(f"f {a} {b} {c}\n" for a, b, c in self._faces)
+        lines = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in points.tolist()]
+        lines += [f"f {a} {b} {c}\n" for a, b, c in (corners + 1).tolist()]
+        #: An OBJ file, whose numbers read back to the same bits.
+        self.obj = "".join(lines).encode("ascii")
 
 
 def _array(name: str, values: npt.ArrayLike, kind: type) -> npt.NDArray[Any]:
@@ -276,6 +313,22 @@ def _pose(pose: PoseLike) -> dict[str, Any]:
     return {"at": [x, y, z], "quaternion": quaternion}
 
 
+def _absolute(file: str | os.PathLike[str]) -> Path:
+    """Return a file from the root of the file system; links are not followed."""
+    return Path.cwd() / file
+
+
+def _own(value: Any) -> Any:
+    """Return a copy of the keys of a table, with files from the root of the file system."""
+    if isinstance(value, os.PathLike):
+        return _absolute(value)
+    if isinstance(value, Mapping):
+        return {key: _own(of) for key, of in value.items()}
+    if isinstance(value, list | tuple):
+        return [_own(of) for of in value]
+    return value.copy() if isinstance(value, np.ndarray) else value
+
+
 def _key(name: str) -> str:
     return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _text(name)
 
@@ -290,7 +343,6 @@ class _Writer:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        self._meshes: dict[str, _Mesh] = {}
 
     def value(self, value: Any, name: str) -> str:
         """Return a value of a table of this name."""
@@ -313,14 +365,15 @@ class _Writer:
         raise ArgumentError(f"a {type(value).__name__} has no place in a cell file\n  write: numbers, text, lists or dicts")
 
     def _mesh(self, mesh: _Mesh, name: str) -> str:
-        stem = wanted = f"{self._path.stem}.{re.sub(r'[^A-Za-z0-9_-]', '_', name)}"
-        # Some file systems do not tell upper from lower case.
-        while self._meshes.setdefault(stem.lower(), mesh) is not mesh:
-            stem = f"{wanted}_{len(self._meshes)}"
-        mesh.write(self._path.with_name(f"{stem}.obj"))
-        return f"{stem}.obj"
+        # Named after its contents, so it replaces no other mesh.
+        readable = re.sub(r"[^A-Za-z0-9_-]", "_", name)
+        file = self._path.with_name(f"{self._path.stem}.{readable}.{hashlib.sha256(mesh.obj).hexdigest()[:12]}.obj")
+        file.write_bytes(mesh.obj)
+        return file.name
 
     def _relative(self, file: Path) -> str:
+        if ".." in file.parts:  # Where a link leads cannot be said from its name.
+            return file.as_posix()
         try:
             return Path(os.path.relpath(file, self._path.parent)).as_posix()
         except ValueError:  # On another drive.

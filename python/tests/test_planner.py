@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import elbowroom as er
+from conftest import ROOT
 
 START, GOAL = [1.0, 0.9, 0.2, 0, 0.8, 0], [-1.0, 0.9, 0.2, 0, 0.8, 0]
 
@@ -65,6 +66,26 @@ def test_a_path_leads_around_an_object_that_has_moved() -> None:
         planner.plan([-1, 0], [1, 0], objects={"bal": moved})
     with pytest.raises(er.ArgumentError, match="`objects` is a list"):
         planner.plan([-1, 0], [1, 0], objects=["ball"])  # type: ignore[arg-type]
+
+
+def test_a_region_that_follows_an_object_is_where_the_object_is() -> None:
+    def cell(at: list[float]) -> er.Cell:
+        scene = er.Scene()
+        model = ROOT / "examples/models/ns16/ns16.urdf"
+        scene.add_robot("arm", model, srdf=model.with_suffix(".srdf"), start=[1, 0.2, 0.2, 0, 0.8, 0])
+        scene.add_box("cart", [0.1, 0.1, 0.1], (at, [0, 0, 0, 1]))
+        region = {"shape": "box", "base": [0, 0, -0.4], "size": [0.6, 0.6, 0.8], "warning": 0.1}
+        scene.add("region", "zone", **region, follow={"object": "cart"}, guards=["tcp", "arm"])
+        return scene.cell()
+
+    far, near = [1.2, 3.0, 1.0], [1.2, 0.0, 1.0]
+    q0, q1 = [1, 0.2, 0.2, 0, 0.8, 0], [-1, 0.2, 0.2, 0, 0.8, 0]
+    there, expected = er.Planner(cell(far)), er.Planner(cell(near)).plan(q0, q1)
+    around = there.plan(q0, q1, objects={"cart": (near, [0, 0, 0, 1])})
+    assert expected and (around.q == expected.q).all()
+    assert er.Checker(cell(near), between="arm,zone").distance(around.q).min() > 0.0
+    back = er.Planner(cell(near)).plan(q0, q1, objects={"cart": (far, [0, 0, 0, 1])})
+    assert (back.q == there.plan(q0, q1).q).all() and len(back.waypoints) == 2
 
 
 def test_a_pose_is_reached_also_on_a_straight_line(rx60b: Path) -> None:
@@ -156,6 +177,10 @@ def test_threads_take_turns(exchange: Path) -> None:
         ({"q1": [9.0] * 6}, er.FileError, "limit"),
         ({"time_limit_s": -1.0}, er.ArgumentError, "seconds above 0"),
         ({"speed": np.nan}, er.ArgumentError, "`speed`"),
+        ({"speed": 1e-9}, er.FileError, "more than 5000000 rows"),
+        ({"period_s": 1e-9}, er.FileError, "more than 5000000 rows"),
+        ({"period_s": 0.0}, er.ArgumentError, "`period_s`"),
+        ({"q1": None, "pose": (0.4, [0, 0, 0, 1])}, er.ArrayError, "place of shape"),
         ({"linear": True}, er.FileError, "a pose as the goal"),
     ],
 )
@@ -173,8 +198,9 @@ def test_a_planner_that_cannot_be_teaches(exchange: Path) -> None:
         er.Planner(cell)
     with pytest.raises(er.ArgumentError, match="rrt-connect"):
         er.Planner(cell, "left", planner="prm")
-    with pytest.raises(er.Error, match="clearance"):
-        er.Planner(cell, "left", clearance_m=float("nan")).plan(START, GOAL)
+    for clearance_m in (float("nan"), -1.0):
+        with pytest.raises(er.ArgumentError, match="`clearance_m`"):
+            er.Planner(cell, "left", clearance_m=clearance_m)
 
 
 def test_a_planner_of_a_map_takes_free_cells() -> None:

@@ -1,5 +1,6 @@
 //! A resolved cell: names resolved, all numbers in metres, radians and seconds.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 use elbowroom_avoidance::{AvoiderSettings, Rules};
@@ -275,6 +276,17 @@ impl MapSpec {
 }
 
 impl Cell {
+    /// The cell with objects at rest at other poses in the world.
+    pub fn with_objects_at(&self, placed: &[(ObjectId, Pose)]) -> Cow<'_, Self> {
+        let mut cell = Cow::Borrowed(self);
+        for (object, in_world) in placed {
+            let cell = cell.to_mut();
+            cell.objects[object.0].in_world = *in_world;
+            cell.moving_objects.retain(|moving| moving.object != *object);
+        }
+        cell
+    }
+
     /// The robots that monitors guard: all but the mechanisms, in file order.
     pub fn guarded_robots(&self) -> impl Iterator<Item = RobotId> {
         guarded(&self.robots)

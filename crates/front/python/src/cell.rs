@@ -36,6 +36,8 @@ impl Cell {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let model = py.detach(|| Model::load(&path).map_err(Fault::from))?;
+        // The present folder may be another one when it is pickled.
+        let path = std::path::absolute(&path).unwrap_or(path);
         Ok(Self { model: Arc::new(model), path })
     }
 

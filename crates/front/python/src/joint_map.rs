@@ -42,6 +42,9 @@ pub fn map<'py>(
     let request = MapRequest { robot, ..MapRequest::default() };
     let progress = Progress::new(py, progress, cell.objects.len(), "objects")?;
     let query = py.detach(|| MapQuery::new(cell.clone(), &request, &|_| ()).map_err(Fault::from))?;
+    if query.union([]).is_none() {
+        return Err(too_large().into());
+    }
     let mut objects = Vec::with_capacity(cell.objects.len());
     for (id, object) in cell.objects.iter().enumerate() {
         let cells = py.detach(|| query.cells_of(ObjectId(id), &object.in_world, model).map_err(Fault::from))?;
@@ -51,6 +54,11 @@ pub fn map<'py>(
     }
     progress.end(py)?;
     MapRecord { query: Arc::new(query), model, objects, seen: None }.into_map(py)
+}
+
+fn too_large() -> Fault {
+    let text = "the map has too many cells for an array\n  write: a larger `step` in [map.ROBOT] of the cell file";
+    Fault::Argument(text.into())
 }
 
 impl MapRecord {
@@ -67,9 +75,7 @@ impl MapRecord {
     /// The map as an object of the package.
     fn into_map(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         let Some(dense) = py.detach(|| self.query.union(self.obstacles())) else {
-            let text =
-                "the map has too many cells for an array\n  write: a larger `step` in [map.ROBOT] of the cell file";
-            return Err(Fault::Argument(text.into()).into());
+            return Err(too_large().into());
         };
         let axes = self.query.axes();
         let joints: Vec<&str> = axes.iter().map(GridAxis::joint).collect();

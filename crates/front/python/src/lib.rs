@@ -26,12 +26,15 @@ mod robot;
 mod rows;
 mod run;
 
+use numpy::PyArray1;
 use pyo3::prelude::*;
 
 /// The extension module; use the package `elbowroom`.
 #[pymodule]
 fn _elbowroom(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    // NumPy's interface is found when the first array is made: now, when no signal can come between.
+    let _ = PyArray1::<f64>::from_vec(module.py(), Vec::new());
     module.add_class::<robot::Robot>()?;
     module.add_class::<cell::Cell>()?;
     module.add_class::<checker::Checker>()?;

@@ -1,6 +1,5 @@
 //! Paths without collision.
 
-use std::borrow::Cow;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::time::Duration;
@@ -149,6 +148,12 @@ impl Planner {
                 return Err(Fault::Argument(text).into());
             }
         };
+        // Written so that NaN fails.
+        if !(clearance_m >= 0.0 && clearance_m.is_finite()) {
+            let text =
+                format!("`clearance_m` is {clearance_m}\n  write: a finite number of metres, 0 or more, as 0.02");
+            return Err(Fault::Argument(text).into());
+        }
         let query = cell.py().detach(|| PathQuery::new(model.clone()).map_err(Fault::from))?;
         Ok(Self { cell: cell.unbind(), model, id, joints, kind, clearance_m, query: Mutex::new(query) })
     }
@@ -222,6 +227,9 @@ impl Planner {
         let time_limit = limit.ok_or_else(|| {
             Fault::Argument(format!("`time_limit_s` is {time_limit_s}\n  write: seconds above 0, as 5.0"))
         })?;
+        if let Some(period_s) = period_s.filter(|period_s| !(*period_s > 0.0 && period_s.is_finite())) {
+            return Err(Fault::Argument(format!("`period_s` is {period_s}\n  write: seconds above 0, as 0.01")).into());
+        }
         // Written so that NaN fails.
         if !(speed > 0.0 && speed <= 1.0) {
             return Err(Fault::Argument(format!("`speed` is {speed}\n  write: a number above 0 and at most 1")).into());
@@ -272,15 +280,7 @@ pub struct PathRecord {
 impl PathRecord {
     /// The robot on its path as an HTML page that needs no network; the cell at its start if there is no path.
     fn page(&self, py: Python<'_>) -> PyResult<String> {
-        let page = || {
-            let mut cell = Cow::Borrowed(&*self.model);
-            for (object, in_world) in &self.placed {
-                let cell = cell.to_mut();
-                cell.objects[object.0].in_world = *in_world;
-                cell.moving_objects.retain(|moving| moving.object != *object);
-            }
-            page::of_motion(&cell, "plan", self.motion.clone())
-        };
+        let page = || page::of_motion(&self.model.with_objects_at(&self.placed), "plan", self.motion.clone());
         Ok(py.detach(page)?)
     }
 }

@@ -36,11 +36,9 @@ use crate::rows::{map_rows, shaped};
 pub struct Robot {
     pub(crate) model: Arc<Model>,
     path: PathBuf,
-    /// The same from the root of the file system, for its page: by then the present folder may be another.
+    /// The same from the root of the file system, for its page and for pickles: by then the present folder may be another.
     drawn: (PathBuf, InspectOptions),
-    srdf: Option<PathBuf>,
     unit: Option<String>,
-    joints_file: Option<PathBuf>,
     warnings: Vec<String>,
     joint_names: Vec<String>,
 }
@@ -90,7 +88,7 @@ fn read(path: PathBuf, srdf: Option<PathBuf>, unit: Option<String>, joints: Opti
     let drawn = (absolute(&path), inspected);
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
     let joint_names = joint_names(&loaded.robot.chain);
-    Ok(Robot { model: Arc::new(loaded.robot), path, drawn, srdf, unit, joints_file: joints, warnings, joint_names })
+    Ok(Robot { model: Arc::new(loaded.robot), path, drawn, unit, warnings, joint_names })
 }
 
 #[pymethods]
@@ -286,7 +284,8 @@ impl Robot {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let files = (&self.path, &self.srdf, &self.unit, &self.joints_file);
+        let (path, options) = &self.drawn;
+        let files = (path, &options.srdf, &self.unit, &options.joints);
         py.import("elbowroom.pickles")?.getattr("reduced_robot")?.call1((files,))
     }
 }

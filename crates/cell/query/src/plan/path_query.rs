@@ -107,7 +107,9 @@ impl<C: Borrow<Cell>> PathQuery<C> {
         let of_model = |model| CoverObstacles::with_covers(model, scene, &state, clearance_m, &self.covers);
         let obstacles = model.map(of_model);
         let period_s = request.period_s.unwrap_or(cell.timing.tick_s);
-        let answer = region_constraint::at_start(cell, id, from, &request.carried, clearance_m, |constraint| {
+        // Regions that follow a placed object are where it is.
+        let placed = cell.with_objects_at(&request.placed);
+        let answer = region_constraint::at_start(&placed, id, from, &request.carried, clearance_m, |constraint| {
             let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
             let mut exact =
                 RrtConnect::new(scene, id).map_err(|e| refused(e.into()))?.with_interrupt(interrupt.clone());

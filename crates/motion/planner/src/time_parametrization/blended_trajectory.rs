@@ -172,6 +172,9 @@ impl BlendedTrajectory {
     }
 }
 
+/// Most rows of a motion: hours at the ticks of controllers.
+const MAX_ROWS: usize = 5_000_000;
+
 /// Samples at every period (s) from 0 to a duration (s); the last sample is at the end, which `q` returns for infinity.
 pub(super) fn sampled(
     seconds: f64,
@@ -180,6 +183,9 @@ pub(super) fn sampled(
 ) -> Result<JointTrajectory, TimeParametrizationError> {
     validate_period(period)?;
     let count = periods(seconds, period).max(0.0) as usize;
+    if count >= MAX_ROWS {
+        return Err(TimeParametrizationError::Rows { seconds, period_s: period, most: MAX_ROWS });
+    }
     let row = |k: usize| {
         let t_s = k as f64 * period;
         TrajectoryRow { t_s, q: q(if k == count { f64::INFINITY } else { t_s }) }

@@ -50,6 +50,18 @@ pub enum TimeParametrizationError {
     /// The period is invalid.
     #[error("the period is {0} s: give a finite number above 0")]
     Period(f64),
+    /// The motion has too many rows.
+    #[error(
+        "a motion of {seconds:.3} s with a row every {period_s} s has more than {most} rows: give a longer period, or a higher speed"
+    )]
+    Rows {
+        /// Duration, s.
+        seconds: f64,
+        /// Period, s.
+        period_s: f64,
+        /// Most rows of a motion.
+        most: usize,
+    },
 }
 
 /// Checks that there are valid limits for each of a number of joints.
