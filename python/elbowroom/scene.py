@@ -49,10 +49,10 @@ class Scene:
     >>> scene.add_robot("arm", "examples/models/rx60b/rx60b.urdf")
     >>> scene.add_box("table", [0.6, 0.6, 0.1], ([0.5, 0.0, 0.1], [0, 0, 0, 1]))
     >>> er.Checker(scene.cell(), between="arm,table").distance(np.zeros((1, 6))).round(3).tolist()
-    [0.06]
+    [0.104]
     >>> scene.move("table", ([1.5, 0.0, 0.1], [0, 0, 0, 1]))
     >>> er.Checker(scene.cell(), between="arm,table").distance(np.zeros((1, 6))).round(3).tolist()
-    [1.06]
+    [1.088]
     """
 
     def __init__(self, name: str = "scene", **keys: Any) -> None:
@@ -192,8 +192,10 @@ class Scene:
             What is wrong with a table, and what to write instead.
         """
         folder = Path(tempfile.mkdtemp(prefix="elbowroom-")).resolve()
+        path = folder / "scene.toml"
         try:
-            cell = self._loaded(folder / "scene.toml")
+            path.write_text(self._text(path), encoding="utf-8")
+            cell = _loaded(path)
         except BaseException:
             shutil.rmtree(folder, ignore_errors=True)
             raise
@@ -211,31 +213,20 @@ class Scene:
             If the file cannot be written, or what is wrong with a table.
         """
         path = _absolute(file)
-        is_new = not path.exists()
-        written = path if is_new else path.with_name(f".{path.name}.new")
+        # In the same folder, because other files are relative to it.
+        new = path.with_name(f".{path.name}.new") if path.exists() else path
         try:
-            written.write_text(self._text(path), encoding="utf-8")
-            if not is_new:
-                Cell.load(written)
-                written.replace(path)
+            new.write_text(self._text(path), encoding="utf-8")
+            if new != path:
+                _loaded(new)
+                new.replace(path)
         except OSError as error:
             hint = "a file in a folder that exists and can be written to"
             raise FileError(f"{path}: cannot be written: {error}\n  write: {hint}", str(path), None, str(error), hint) from error
         finally:
-            if not is_new:
-                written.unlink(missing_ok=True)
+            if new != path:
+                new.unlink(missing_ok=True)
         return Cell.load(path)
-
-    def _loaded(self, path: Path) -> Cell:
-        """Save and load a temporary file, of whose line an error has the text."""
-        try:
-            return self.save(path)
-        except FileError as error:
-            if error.file != str(path) or error.line is None:
-                raise
-            line = path.read_text(encoding="utf-8").split("\n")[error.line - 1]
-            text = f"scene, `{line}`: {error.message}" + (f"\n  write: {error.hint}" if error.hint else "")
-            raise FileError(text, "scene", None, error.message, error.hint) from None
 
     def page(self) -> str:
         """Return the scene as an HTML page that needs no network."""
@@ -267,6 +258,18 @@ class Scene:
                 lines += [f"{_key(key)} = {writer.value(value, name)}" for key, value in keys.items()]
         lines.append("")
         return "\n".join(lines)
+
+
+def _loaded(path: Path) -> Cell:
+    """Load a file that does not stay; an error has the text of its line instead of the number."""
+    try:
+        return Cell.load(path)
+    except FileError as error:
+        if error.file != str(path) or error.line is None:
+            raise
+        line = path.read_text(encoding="utf-8").split("\n")[error.line - 1]
+        text = f"scene, `{line}`: {error.message}" + (f"\n  write: {error.hint}" if error.hint else "")
+        raise FileError(text, "scene", None, error.message, error.hint) from None
 
 
 class _Mesh:

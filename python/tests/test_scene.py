@@ -174,7 +174,7 @@ def test_saving_replaces_no_file_of_others_and_no_good_file(tmp_path: Path) -> N
     assert er.Checker(first, between="arm,mine").distance(q)[0] == pytest.approx(1.663, abs=1e-3)
     good = (tmp_path / "bench.toml").read_bytes()
     scene.add_sphere("ball", -1.0, [0, 0, 0])
-    with pytest.raises(er.FileError, match="radius"):
+    with pytest.raises(er.FileError, match="scene, `radius = -1.0`"):
         scene.save(tmp_path / "bench.toml")
     assert (tmp_path / "bench.toml").read_bytes() == good and not list(tmp_path.glob(".*"))
     scene.remove("ball")

@@ -42,7 +42,7 @@ type EventNames = Vec<(Option<String>, &'static str)>;
 /// --------
 /// >>> import elbowroom as er
 /// >>> monitor = er.Monitor(er.Cell.load("examples/figure12/cell.toml"))
-/// >>> tick = monitor.tick(0.0, [0, 0, 0, 0, 0, 0])["ns16"]
+/// >>> tick = monitor.tick(0.0, [0] * 6, qd=[0] * 6)["ns16"]
 /// >>> tick.speed_override, tick.reason
 /// (1.0, 'free')
 /// >>> monitor.tick(0.002, [float("nan")] * 6)["ns16"].speed_override

@@ -70,7 +70,7 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// Searches in another thread, so that signals of this one are looked at meanwhile; one ends the search.
+    /// Searches in another thread, so that this one notices signals meanwhile; one ends the search.
     fn search(&self, py: Python<'_>, request: &PathRequest) -> Result<PathAnswer, Fault> {
         let interrupt = Interrupt::default();
         let mut raised = None;
