@@ -181,6 +181,7 @@ def test_threads_take_turns(exchange: Path) -> None:
         ({"period_s": 1e-9}, er.FileError, "more than 5000000 rows"),
         ({"period_s": 0.0}, er.ArgumentError, "`period_s`"),
         ({"q1": None, "pose": (0.4, [0, 0, 0, 1])}, er.ArrayError, "place of shape"),
+        ({"q1": None, "pose": np.eye(4) + 0j}, er.ArrayError, "complex numbers"),
         ({"linear": True}, er.FileError, "a pose as the goal"),
     ],
 )
