@@ -1,6 +1,6 @@
 """Collisions and distances of robots with themselves, beside pinocchio with Coal and python-fcl, on one core and in one run.
 
-pip install pin python-fcl trimesh; then python python/benchmarks/beside_peers.py ROBOT.urdf ROBOT.srdf [...]
+pip install pin python-fcl; then python python/benchmarks/beside_peers.py ROBOT.urdf ROBOT.srdf [...]
 
 Every library has the same meshes, the pairs that the SRDF leaves, and the same random states within the limits. Python calls pinocchio once
 per state, python-fcl once per pair, and elbowroom once for all states. Where a library needs more than a minute it gets fewer states.
@@ -28,6 +28,21 @@ Answer = Callable[[States], npt.NDArray[Any]]
 LONGEST_S = 60.0
 
 
+def configurations(model: Any, joints: list[str]) -> Callable[[States], States]:
+    """Return how a row of values becomes a configuration of a model of pinocchio."""
+    import pinocchio as pin
+
+    neutral = pin.neutral(model)
+    places = [model.joints[model.getJointId(name)].idx_q for name in joints]
+
+    def full(row: States) -> States:
+        q: States = neutral.copy()
+        q[places] = row
+        return q
+
+    return full
+
+
 def pinocchio_answers(urdf: Path, srdf: Path, joints: list[str]) -> tuple[Answer, Answer, Any, Any]:
     """Return pinocchio's collisions and distances of rows, its model and its pairs."""
     import pinocchio as pin
@@ -37,14 +52,7 @@ def pinocchio_answers(urdf: Path, srdf: Path, joints: list[str]) -> tuple[Answer
     geometry = pin.buildGeomFromUrdf(model, str(urdf), pin.GeometryType.COLLISION, package_dirs=[str(urdf.parent), str(urdf.parent.parent)])
     geometry.addAllCollisionPairs()
     pin.removeCollisionPairs(model, geometry, str(srdf))
-    data, geometry_data = model.createData(), pin.GeometryData(geometry)
-    neutral = pin.neutral(model)
-    places = [model.joints[model.getJointId(name)].idx_q for name in joints]
-
-    def full(row: States) -> States:
-        q = neutral.copy()
-        q[places] = row
-        return q
+    data, geometry_data, full = model.createData(), pin.GeometryData(geometry), configurations(model, joints)
 
     def collides(q: States) -> npt.NDArray[Any]:
         return np.array([pin.computeCollisions(model, data, geometry, geometry_data, full(row), True) for row in q])
@@ -64,9 +72,7 @@ def fcl_answers(model: Any, geometry: Any, joints: list[str]) -> tuple[Answer, A
     import fcl
     import pinocchio as pin
 
-    data, geometry_data = model.createData(), pin.GeometryData(geometry)
-    neutral = pin.neutral(model)
-    places = [model.joints[model.getJointId(name)].idx_q for name in joints]
+    data, geometry_data, full = model.createData(), pin.GeometryData(geometry), configurations(model, joints)
     objects = []
     for solid in geometry.geometryObjects:
         mesh = solid.geometry
@@ -81,9 +87,7 @@ def fcl_answers(model: Any, geometry: Any, joints: list[str]) -> tuple[Answer, A
     pairs = [(pair.first, pair.second) for pair in geometry.collisionPairs]
 
     def place(row: States) -> None:
-        q = neutral.copy()
-        q[places] = row
-        pin.updateGeometryPlacements(model, data, geometry, geometry_data, q)
+        pin.updateGeometryPlacements(model, data, geometry, geometry_data, full(row))
         for solid, pose in zip(objects, geometry_data.oMg, strict=True):
             solid.setTransform(fcl.Transform(pose.rotation, pose.translation))
 

@@ -304,8 +304,8 @@ class GuidedStep:
     gap_m
         The distance between tool and surfaces at the start of the step; NaN if none is near.
     limit
-        What kept the arm from following the hand: `"surface"`, `"entry"`, `"reach"`, `"joint speed"`, `"contact"`, `"energy"` or
-        `"unproven"`; `None` if it followed.
+        What kept the arm from following the hand: `"surface"`, `"entry"`, `"reach"`, `"joint speed"`, `"contact"`, `"energy"`,
+        `"unproven"`, `"pose"` (not finite), `"tick too long"` or `"distance unknown"`; `None` if it followed.
     limited_by
         The joint that is too slow, or the part that would be touched; otherwise `None`.
     force_n
@@ -322,7 +322,7 @@ class GuidedStep:
 
 @dataclass(frozen=True, eq=False)
 class Guidance:
-    """What a guided arm did in many steps; the rows are those of `GuidedStep`.
+    """What a guided arm did in many steps: a row for each, with the meaning that `GuidedStep` says.
 
     Attributes
     ----------

@@ -139,7 +139,7 @@ class Scene:
         if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
             mesh = (mesh.vertices, mesh.faces)
         if not (isinstance(mesh, tuple) and len(mesh) == 2):
-            raise ArgumentError(f"a {type(mesh).__name__} is no mesh\n  write: a file, a trimesh.Trimesh, or (vertices, faces)")
+            raise ArgumentError(f"a {type(mesh).__name__} is not a mesh\n  write: a file, a trimesh.Trimesh, or (vertices, faces)")
         found = _Mesh(*mesh)
         self._object(name, pose, shape="mesh", mesh=found)
 

@@ -133,7 +133,7 @@ def test_what_has_no_place_in_a_scene_teaches() -> None:
         (lambda: scene.add_box("box", words), er.ArrayError, "`size_m`"),
         (lambda: scene.add_box("", [1, 2, 3]), er.ArgumentError, "a name is text"),
         (lambda: scene.add_box("box", [1, 2, 3], np.eye(3)), er.ArrayError, "`pose`"),
-        (lambda: scene.add_mesh("mesh", 5), er.ArgumentError, "no mesh"),
+        (lambda: scene.add_mesh("mesh", 5), er.ArgumentError, "not a mesh"),
         (lambda: scene.add_mesh("mesh", (CUBE[0], CUBE[1] + 1)), er.ArrayError, "indices from 1 to 8"),
         (lambda: scene.add_mesh("mesh", (CUBE[0] * np.inf, CUBE[1])), er.ArrayError, "not finite"),
         (lambda: scene.add_mesh("mesh", (CUBE[0][:, :2], CUBE[1])), er.ArrayError, "`vertices`"),

@@ -1,7 +1,7 @@
 //! The arm of an operator, with the fixtures of its tool.
 
-use elbowroom_robot::ObjectId;
-use elbowroom_shared_control::GuidedArm;
+use elbowroom_robot::{GeometryId, ObjectId};
+use elbowroom_shared_control::{ArmLimit, GuidedArm};
 
 use crate::{Cell, CellFixture, CellGuide, CellOperator, FixtureRef};
 
@@ -79,6 +79,21 @@ pub enum FixtureChange {
     Off,
     /// The tool is too near to what would protect then; it is tried again.
     Refused,
+}
+
+impl CellOperator {
+    /// The name of what keeps the arm from following: a joint, or the other one of two parts that would touch; `None` for other
+    /// limits.
+    pub fn limited_by(&self, cell: &Cell, limit: ArmLimit) -> Option<String> {
+        match limit {
+            ArmLimit::JointSpeed(joint) => cell.robots[self.robot.0].joint_names().get(joint).cloned(),
+            ArmLimit::Contact(a, b) => {
+                let is_own = |part: &GeometryId| matches!(part, GeometryId::Link { robot, .. } if *robot == self.robot);
+                Some(cell.part_name(if is_own(&a) { b } else { a }))
+            }
+            _ => None,
+        }
+    }
 }
 
 impl OperatedArm<'_> {

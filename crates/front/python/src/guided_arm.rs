@@ -4,7 +4,6 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use elbowroom::cell::{Cell as Model, CellOperator, OperatedArm};
 use elbowroom::formats::suggest;
-use elbowroom::robot::GeometryId;
 use elbowroom::scene::Scene;
 use elbowroom::shared_control::{ArmLimit, GuidedStep, Limit};
 use elbowroom::spatial::{Pose, Rotation, Vec3};
@@ -44,25 +43,12 @@ impl Surroundings {
     fn operator(&self) -> &CellOperator {
         &self.cell.guidance.operators[self.operator]
     }
-
-    /// The name of what keeps the arm from following: a joint, or the other one of two parts that would touch.
-    fn limited_by(&self, limit: ArmLimit) -> Option<String> {
-        let robot = self.operator().robot;
-        match limit {
-            ArmLimit::JointSpeed(joint) => self.cell.robots[robot.0].joint_names().get(joint).cloned(),
-            ArmLimit::Contact(a, b) => {
-                let is_own = |part: &GeometryId| matches!(part, GeometryId::Link { robot: of, .. } if *of == robot);
-                Some(self.cell.part_name(if is_own(&a) { b } else { a }))
-            }
-            _ => None,
-        }
-    }
 }
 
 /// A robot that a person guides: its tool follows poses and glides along surfaces, shields and guides.
 ///
 /// The arm has the fixtures, forces and settings of `[operator.NAME]` in the cell file; the stream of that table is not read, the poses
-/// are those of the calls. Fixtures are on as at the start of the stream. Other robots and objects stay where they are at the start.
+/// come from the calls. Fixtures are on as at the start of the stream. Other robots and objects stay where they are at the start.
 /// No motion is made that is not proven free. Threads that share an arm take turns.
 ///
 /// Parameters
@@ -75,7 +61,7 @@ impl Surroundings {
 /// Raises
 /// ------
 /// ArgumentError
-///     If there is no such operator.
+///     If the cell does not have this operator.
 /// FileError
 ///     If the arm starts too near to a surface, or a shield cannot be made.
 ///
@@ -145,7 +131,8 @@ impl Steps {
         self.tool.extend([0.0, 0.0, 0.0, 1.0]);
         self.gap_m.push(step.tool.gap_m.unwrap_or(f64::NAN));
         self.limits.push(step.limit.map(word));
-        self.limited_by.push(step.limit.and_then(|limit| surroundings.limited_by(limit)));
+        let Surroundings { cell, .. } = surroundings;
+        self.limited_by.push(step.limit.and_then(|limit| surroundings.operator().limited_by(cell, limit)));
         let force = operated.arm.forces().map_or([f64::NAN; 3], |forces| forces.force_on_hand().to_array());
         self.force_n.extend(force);
     }

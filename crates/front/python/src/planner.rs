@@ -47,9 +47,9 @@ const BETWEEN_TRIES: Duration = Duration::from_millis(1);
 /// Raises
 /// ------
 /// ArgumentError
-///     If there is no such planner.
+///     If the word for the planner is not known.
 /// FileError
-///     If there is no such robot, or the cell has no scene.
+///     If the cell does not have this robot, or a solid of it is not finite.
 ///
 /// Examples
 /// --------
@@ -144,7 +144,7 @@ impl Planner {
             "rrt-connect" => PathPlanner::RrtConnect,
             "grid" => PathPlanner::Grid,
             other => {
-                let text = format!("there is no planner \"{other}\"\n  write: \"rrt-connect\" or \"grid\"");
+                let text = format!("`planner` is \"{other}\"\n  write: \"rrt-connect\" or \"grid\"");
                 return Err(Fault::Argument(text).into());
             }
         };

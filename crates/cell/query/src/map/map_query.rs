@@ -102,12 +102,22 @@ impl<C: Borrow<Cell>> MapQuery<C> {
         in_world: &Pose,
         model: ObstacleModel,
     ) -> Result<BlockedCells, Diagnostic> {
-        let shape = &self.cell.borrow().objects[object.0].shape;
-        let filled = match self.maps.of(object) {
-            Some(map) => map.fill(model, &[(shape, *in_world)], &|_| ()),
-            None => self.maps.first().fill(model, &[], &|_| ()),
-        };
+        let filled = self.fill_object(object, in_world, model, &|_| ());
         filled.map(|filled| filled.blocks).map_err(|e| self.refused(&e))
+    }
+
+    fn fill_object(
+        &self,
+        object: ObjectId,
+        in_world: &Pose,
+        model: ObstacleModel,
+        report: &(dyn Fn(f64) + Sync),
+    ) -> Result<FilledCells, RobotMapError> {
+        let shape = &self.cell.borrow().objects[object.0].shape;
+        match self.maps.of(object) {
+            Some(map) => map.fill(model, &[(shape, *in_world)], report),
+            None => self.maps.first().fill(model, &[], report),
+        }
     }
 
     /// The cells that other solids block, at their poses in the world: what a sensor sees, for example. No link may touch them.
@@ -222,10 +232,7 @@ impl<C: Borrow<Cell>> MapQuery<C> {
             let report =
                 |share: f64| progress(MapProgress { share: (number as f64 + share) / count, what: &object.name });
             report(0.0);
-            match self.maps.of(ObjectId(number)) {
-                Some(map) => map.fill(model, &[placed(object)], &report),
-                None => self.maps.first().fill(model, &[], &report),
-            }
+            self.fill_object(ObjectId(number), &object.in_world, model, &report)
         };
         objects.iter().enumerate().map(fill).collect()
     }

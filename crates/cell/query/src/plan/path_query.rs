@@ -1,16 +1,17 @@
 //! A cell that is prepared for the search of paths.
 
-use std::borrow::Borrow;
+use std::borrow::{Borrow, Cow};
 use std::time::Instant;
 
 use elbowroom_cell::region_constraint::RegionConstraint;
-use elbowroom_cell::{Cell, CellRobot, OutOfReachProofs, PathPlanner, QueryModel, region_constraint};
+use elbowroom_cell::{Cell, CellRobot, Follow, OutOfReachProofs, PathPlanner, QueryModel, region_constraint};
 use elbowroom_formats::Diagnostic;
 use elbowroom_planner::{
     CoverModels, CoverObstacles, GoalLimits, Interrupt, RobotPlanner, RrtConnect, RrtConnectError,
 };
-use elbowroom_robot::RobotId;
+use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Scene, SceneError, SceneState};
+use elbowroom_spatial::Pose;
 
 use super::answer::PathAnswer;
 use super::map_planner::PURPOSE;
@@ -107,9 +108,8 @@ impl<C: Borrow<Cell>> PathQuery<C> {
         let of_model = |model| CoverObstacles::with_covers(model, scene, &state, clearance_m, &self.covers);
         let obstacles = model.map(of_model);
         let period_s = request.period_s.unwrap_or(cell.timing.tick_s);
-        // Regions that follow a placed object are where it is.
-        let placed = cell.with_objects_at(&request.placed);
-        let answer = region_constraint::at_start(&placed, id, from, &request.carried, clearance_m, |constraint| {
+        let followed = followed(cell, &request.placed);
+        let answer = region_constraint::at_start(&followed, id, from, &request.carried, clearance_m, |constraint| {
             let regions = constraint.as_ref().map(RegionConstraint::names).unwrap_or_default();
             let mut exact =
                 RrtConnect::new(scene, id).map_err(|e| refused(e.into()))?.with_interrupt(interrupt.clone());
@@ -142,6 +142,13 @@ impl<C: Borrow<Cell>> PathQuery<C> {
         let reason = answer.reason.map(|reason| if interrupt.is_set() { interrupted() } else { reason });
         Ok(PathAnswer { reason, point, ..answer })
     }
+}
+
+/// The cell in which regions that follow a placed object are where it is.
+fn followed<'c>(cell: &'c Cell, placed: &[(ObjectId, Pose)]) -> Cow<'c, Cell> {
+    let is_followed = |object| cell.regions.iter().any(|region| region.follow == Some(Follow::Object(object)));
+    let placed: Vec<_> = placed.iter().copied().filter(|(object, _)| is_followed(*object)).collect();
+    cell.with_objects_at(&placed)
 }
 
 /// Searches with random samples.

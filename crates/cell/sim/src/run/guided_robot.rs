@@ -4,7 +4,7 @@ use elbowroom_cell::shared_control::{ArmLimit, Limit};
 use elbowroom_cell::{Cell, CellOperator, FixtureChange, OperatedArm, OperatorInput};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
-use elbowroom_robot::{GeometryId, RobotId};
+use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneError, SceneState};
 use elbowroom_spatial::Pose;
 
@@ -112,7 +112,8 @@ impl<'s> GuidedRobot<'s> {
         let is_held = allowed <= 0.0 || matches!(input, OperatorInput::Disabled | OperatorInput::Stale);
         let now = next_state(self.state, &sample, is_held);
         if std::mem::replace(&mut self.state, now) != now {
-            event(&reason(cell, self.operator.robot, &sample), RunEvent::Guided(now));
+            let by = sample.limit.and_then(|limit| self.operator.limited_by(cell, limit));
+            event(&by.unwrap_or_default(), RunEvent::Guided(now));
         }
         Ok(())
     }
@@ -120,18 +121,6 @@ impl<'s> GuidedRobot<'s> {
 
 fn pose_of(input: OperatorInput) -> Option<Pose> {
     if let OperatorInput::Pose(pose) = input { Some(pose) } else { None }
-}
-
-/// What keeps the arm from following: a joint, or the other of two parts that would touch; empty otherwise.
-fn reason(cell: &Cell, robot: RobotId, sample: &GuidanceSample) -> String {
-    match sample.limit {
-        Some(ArmLimit::JointSpeed(joint)) => cell.robots[robot.0].joint_names().get(joint).cloned().unwrap_or_default(),
-        Some(ArmLimit::Contact(a, b)) => {
-            let is_own = |part: &GeometryId| matches!(part, GeometryId::Link { robot: of, .. } if *of == robot);
-            cell.part_name(if is_own(&a) { b } else { a })
-        }
-        _ => String::new(),
-    }
 }
 
 fn of_fixture(change: FixtureChange) -> RunEvent {
