@@ -8,17 +8,46 @@ Joint values are `(N, dof)` arrays of float64, radians for joints that turn and 
 state. Lengths are metres, times seconds. For a cell the robots stand side by side in the order of the file.
 """
 
-from elbowroom._elbowroom import Cell, Checker, GuidedArm, Monitor, Planner, ReachQuery, Robot, __version__
+from elbowroom._elbowroom import (
+    Cell,
+    Checker,
+    GuidedArm,
+    Monitor,
+    Planner,
+    ReachQuery,
+    Robot,
+    Rules,
+    VirtualRobot,
+    __version__,
+)
 from elbowroom.errors import ArgumentError, ArrayError, Error, FileError
 from elbowroom.pages import save, show
-from elbowroom.results import Edges, Guidance, GuidedStep, JointMap, Overrides, Path, Reach, Run, Tick, Trace, Witness
+from elbowroom.results import (
+    Cooperation,
+    CooperationStep,
+    Edges,
+    Guidance,
+    GuidedStep,
+    JointMap,
+    Mesh,
+    Overrides,
+    Path,
+    Reach,
+    Run,
+    Tick,
+    Trace,
+    Witness,
+)
 from elbowroom.scene import Scene
+from elbowroom.trajectory import Trajectory
 
 __all__ = [
     "ArgumentError",
     "ArrayError",
     "Cell",
     "Checker",
+    "Cooperation",
+    "CooperationStep",
     "Edges",
     "Error",
     "FileError",
@@ -26,6 +55,7 @@ __all__ = [
     "GuidedArm",
     "GuidedStep",
     "JointMap",
+    "Mesh",
     "Monitor",
     "Overrides",
     "Path",
@@ -33,10 +63,13 @@ __all__ = [
     "Reach",
     "ReachQuery",
     "Robot",
+    "Rules",
     "Run",
     "Scene",
     "Tick",
     "Trace",
+    "Trajectory",
+    "VirtualRobot",
     "Witness",
     "__version__",
     "save",

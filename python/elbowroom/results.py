@@ -13,11 +13,44 @@ import numpy.typing as npt
 from elbowroom.errors import ArgumentError
 from elbowroom.pages import frame
 from elbowroom.poses import PoseLike
+from elbowroom.rerun_log import log_run
+from elbowroom.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from elbowroom._elbowroom import MapRecord, PathRecord, RunRecord
+    from elbowroom._elbowroom import Cell, MapRecord, PathRecord, RunRecord
 
-__all__ = ["Edges", "Guidance", "GuidedStep", "JointMap", "Overrides", "Path", "Reach", "Run", "Tick", "Trace", "Witness"]
+__all__ = [
+    "Cooperation",
+    "CooperationStep",
+    "Edges",
+    "Guidance",
+    "GuidedStep",
+    "JointMap",
+    "Mesh",
+    "Overrides",
+    "Path",
+    "Reach",
+    "Run",
+    "Tick",
+    "Trace",
+    "Witness",
+]
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles of a surface.
+
+    Attributes
+    ----------
+    vertices
+        `(V, 3)`, metres.
+    faces
+        `(F, 3)` uint32: indices of vertices, counter-clockwise seen from outside.
+    """
+
+    vertices: npt.NDArray[np.float64]
+    faces: npt.NDArray[np.uint32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +152,11 @@ class Path:
     def duration_s(self) -> float:
         """Duration of the motion."""
         return float(self.times_s[-1]) if len(self.times_s) else 0.0
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """The motion; `ArrayError` if no path was found."""
+        return Trajectory(self.times_s, self.q, self.joints)
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,6 +287,11 @@ class Trace:
     speed_override: npt.NDArray[np.float64]
     distance_m: npt.NDArray[np.float64]
 
+    @property
+    def trajectory(self) -> Trajectory:
+        """The motion."""
+        return Trajectory(self.times_s, self.q, self.joints)
+
 
 @dataclass(frozen=True, eq=False)
 class Run:
@@ -262,12 +305,24 @@ class Run:
         Whether a robot collided, entered a forbidden region or was in a deadlock.
     notes
         Warnings.
+    cell
+        The cell.
     """
 
     summary: dict[str, Any]
     has_violation: bool
     notes: list[str]
+    cell: Cell = field(repr=False)
     _record: RunRecord = field(repr=False)
+
+    @property
+    def objects(self) -> dict[str, npt.NDArray[np.float64]]:
+        """The poses in the world of each object that moves or is gripped: an array `(N, 4, 4)` with a row per tick, metres."""
+        return self._record.objects()
+
+    def to_rerun(self, stream: Any = None) -> None:
+        """Log the scene with all that moves, and the overrides, to Rerun; `stream` is a `rerun.RecordingStream`."""
+        log_run(self, stream)
 
     def page(self) -> str:
         """Return the report, an HTML page with the scene in 3-D that needs no network."""
@@ -350,6 +405,69 @@ class Guidance:
 
     def _only(self) -> GuidedStep:
         return GuidedStep(self.q[0], self.tool[0], float(self.gap_m[0]), self.limit[0], self.limited_by[0], self.force_n[0])
+
+
+@dataclass(frozen=True, eq=False)
+class CooperationStep:
+    """What arms that act as one did in a step.
+
+    Attributes
+    ----------
+    q
+        `(joints,)`, rad or m: the joint values of all arms after the step.
+    part
+        `(4, 4)`: the work-piece in the world, metres.
+    holder
+        The robot that holds it.
+    rate
+        The share of the desired speed, 0 to 1.
+    hold
+        Why it stands although it should move; `None` if it does not.
+    handed_over
+        Why it was handed over, in the step in which the receiver takes it; otherwise `None`.
+    gap_m
+        The least distance between two of the arms, with the work-piece; infinite from 0.1 m on.
+    """
+
+    q: npt.NDArray[np.float64]
+    part: npt.NDArray[np.float64]
+    holder: str
+    rate: float
+    hold: str | None
+    handed_over: str | None
+    gap_m: float
+
+
+@dataclass(frozen=True, eq=False)
+class Cooperation:
+    """What arms that act as one did in many steps: a row for each, with the meaning that `CooperationStep` says.
+
+    Attributes
+    ----------
+    joints
+        The names of the joints, `robot.joint`, in the order of the values.
+    q
+        `(N, joints)`, rad or m.
+    part
+        `(N, 4, 4)`, metres.
+    holder, hold, handed_over
+        A text or `None` per step.
+    rate, gap_m
+        `(N,)`.
+    """
+
+    joints: list[str]
+    q: npt.NDArray[np.float64]
+    part: npt.NDArray[np.float64]
+    holder: list[str]
+    rate: npt.NDArray[np.float64]
+    hold: list[str | None]
+    handed_over: list[str | None]
+    gap_m: npt.NDArray[np.float64]
+
+    def _only(self) -> CooperationStep:
+        rate, gap_m = float(self.rate[0]), float(self.gap_m[0])
+        return CooperationStep(self.q[0], self.part[0], self.holder[0], rate, self.hold[0], self.handed_over[0], gap_m)
 
 
 @dataclass(frozen=True, eq=False)

@@ -90,8 +90,11 @@ def methods(source: Any) -> list[tuple[Callable[..., Any], list[str]]]:
         "step": ["speed_override"],
         "follow": ["speed_override"],
         "moved": ["spheres"],
+        "go_on": ["speed_override"],
+        "to_trimesh": ["kind"],
+        "to_rerun": ["motions"],
     }
-    left_out = {"page", "save", "run", "report", "load"}
+    left_out = {"page", "save", "run", "report", "load", "time_optimal"}
     names = [name for name in dir(source) if not name.startswith("_") and name not in left_out]
     return [(getattr(source, name), keywords.get(name, [])) for name in names if callable(getattr(source, name))]
 
@@ -110,7 +113,7 @@ def usual(rng: random.Random, name: str, width: int) -> list[Any]:
         "evaluate": [np.sort(np.arange(rows, dtype=float)), q] if width == 12 else [q],
         "moved": [{"pallet": there}],
         "step": [there],
-        "follow": [q],
+        "follow": [np.tile([0.0, 0.0, 0.45, 0.0, 0.0, 0.0, 1.0], (rows, 1))],
         "switch": ["table", True],
         "is_active": ["table"],
         "add": ["object", "thing"],
@@ -122,10 +125,19 @@ def usual(rng: random.Random, name: str, width: int) -> list[Any]:
         "add_mesh": ["mesh", ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])],
         "move": ["box", there],
         "remove": ["box"],
+        "correction": [rng.uniform(0, 2), row],
+        "at": [rng.uniform(-1, 9)],
+        "resampled": [rng.uniform(0, 1)],
+        "go_on": [3],
     }
     if name in known:
         return known[name]
     return [q] if name in ("fk", "jacobian", "collides", "distance", "witness", "is_blocked") else []
+
+
+def time_optimal(waypoints: Any, **keywords: Any) -> er.Trajectory:
+    """The fastest motion along waypoints."""
+    return er.Trajectory.time_optimal(waypoints, velocity=1.0, acceleration=2.0, jerk=30.0, **keywords)
 
 
 def test_random_calls_answer_or_say_why(rx60b: Path, exchange: Path) -> None:
@@ -141,8 +153,12 @@ def test_random_calls_answer_or_say_why(rx60b: Path, exchange: Path) -> None:
         (er.ReachQuery(cell, "left"), 7),
         (cell.map("left"), 3),
         (er.Scene(), 3),
+        (er.Rules(), 4),
+        (er.Trajectory([0.0, 1.0], [[0.0] * 6, [1.0] * 6]), 6),
+        (er.VirtualRobot(er.Cell.load(ROOT / "examples/inspection/cell.toml")), 18),
     ]
     makers: list[Callable[..., Any]] = [er.Robot.load, er.Cell.load, er.Checker, er.GuidedArm, er.Monitor, er.Planner, er.ReachQuery, er.Scene]
+    makers += [er.Robot.of, er.Rules, er.Trajectory, er.VirtualRobot, time_optimal]
     answered = 0
     seed = random.randrange(2**32) if CALLS > 1000 else 7
     rng = random.Random(seed)
@@ -151,7 +167,8 @@ def test_random_calls_answer_or_say_why(rx60b: Path, exchange: Path) -> None:
         function, keywords = rng.choice(methods(source))
         words = usual(rng, function.__name__, width)
         if rng.random() < 0.1:
-            function, keywords, words = rng.choice(makers), [], [rng.choice([robot, cell, anything(rng, width)])]
+            function = rng.choice(makers)
+            keywords, words = ["blend", "period_s", "joints"] if function is time_optimal else [], [rng.choice([robot, cell, anything(rng, width)])]
         named = {name: anything(rng, width) for name in keywords if rng.random() < 0.1}
         for _ in range(rng.choice([0, 1, 1, 2])):
             words.insert(rng.randrange(len(words) + 1), anything(rng, width))

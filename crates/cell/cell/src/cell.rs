@@ -14,7 +14,9 @@ use elbowroom_spatial::Pose;
 use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
-use crate::{CellSensor, CellTool, Encoder, FenceWall, Guidance, MovingObject, Payload, PoseTrack, Program};
+use crate::{
+    CellSensor, CellTiming, CellTool, Encoder, FenceWall, Guidance, MovingObject, Payload, PoseTrack, Program,
+};
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
 /// flange's face.
@@ -62,15 +64,6 @@ pub struct Approval {
     pub checksum: String,
     /// The last seal; `None` if the cell is not sealed.
     pub seal: Option<Seal>,
-}
-
-/// Control tick, and longest run.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CellTiming {
-    /// Period of the control tick, s.
-    pub tick_s: f64,
-    /// Longest simulated time of a run, s.
-    pub max_s: f64,
 }
 
 /// Sources of frames outside the cell's robots and objects, which regions follow by index: [`Follow`].

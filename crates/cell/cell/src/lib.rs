@@ -34,6 +34,7 @@ mod area_border;
 mod cell;
 mod cell_ik_error;
 mod cell_monitors;
+mod cell_timing;
 pub mod configure;
 mod controller_zones;
 mod drawn_fixture;
@@ -64,6 +65,7 @@ pub mod region_constraint;
 mod region_edits;
 mod region_id;
 mod rest_pose_contacts;
+mod rules_file;
 mod scene_pairs;
 pub mod seal;
 mod sensor;
@@ -76,13 +78,15 @@ mod tool_change;
 pub mod trajectory;
 mod virtual_robot;
 mod virtual_robot_start;
+mod virtual_robot_words;
 
 pub use cell::{
-    Approval, AvoidanceSpec, Cell, CellGrid, CellPairRules, CellRegion, CellRobot, CellTiming, Follow, FrameSources,
-    MapSpec, Monitoring, RegionSolid, Units,
+    Approval, AvoidanceSpec, Cell, CellGrid, CellPairRules, CellRegion, CellRobot, Follow, FrameSources, MapSpec,
+    Monitoring, RegionSolid, Units,
 };
 pub use cell_ik_error::CellIkError;
 pub use cell_monitors::{CellInstant, CellMonitors, RobotTick};
+pub use cell_timing::CellTiming;
 pub use controller_zones::{ExportedRegion, ZoneExport, ZoneFrame, ZoneLanguage, export_zones};
 pub use drawn_fixture::{DrawnFixture, DrawnTarget, MOST_DRAWN_POINTS};
 pub use elbowroom_access as access;
@@ -108,6 +112,7 @@ pub use program::{KeptAxis, MoveTarget, PathPlanner, Program, ProgramBody, Progr
 pub use query_model::{OutOfReachProofs, QueryModel, QueryRobot};
 pub use region_edits::{EditedRegions, RegionEdit, cell_with_only, table_changes, why_not_continued};
 pub use region_id::CellRegionId;
+pub use rules_file::parse_rules;
 pub use sensor::{CellSensor, SensorKind};
 pub use shield_report::ShieldReport;
 pub use tcp_target::TcpTargetError;

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use elbowroom::Diagnostic;
-use elbowroom::avoidance::fuzzy::{FuzzyError, Surface};
+use elbowroom::avoidance::fuzzy::Surface;
 use elbowroom::avoidance::{DEFAULT_RULES, Rules};
+use elbowroom::cell::parse_rules;
 use serde::Serialize;
 
 use crate::args::RulesArgs;
@@ -74,8 +74,7 @@ pub(crate) fn rules(args: &RulesArgs) -> Result<ExitStatus, Failure> {
 
 fn read(path: &Path) -> Result<Rules, Failure> {
     let text = std::fs::read_to_string(path).map_err(|e| Failure::Wrong(format!("{}: {e}", path.display())))?;
-    let at_line = |e: FuzzyError| Diagnostic::new(path, e.line, e.message).hint(e.hint).into();
-    Rules::from_toml(&text).map_err(at_line)
+    Ok(parse_rules(path, &text)?)
 }
 
 fn table(rules: &Rules) -> String {

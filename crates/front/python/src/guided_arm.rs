@@ -3,31 +3,18 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use elbowroom::cell::{Cell as Model, CellOperator, OperatedArm};
-use elbowroom::formats::suggest;
-use elbowroom::scene::Scene;
 use elbowroom::shared_control::{ArmLimit, GuidedStep, Limit};
-use elbowroom::spatial::{Pose, Rotation, Vec3};
+use elbowroom::spatial::Pose;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use self_cell::self_cell;
 
-use crate::arrays::Rows;
-use crate::cell::Cell;
+use crate::cell::{Cell, matrix};
 use crate::error::Fault;
 use crate::progress::Progress;
 use crate::robot::pose_of;
 use crate::rows::shaped;
-
-/// Steps between two checks whether a signal has arrived: a step takes a few milliseconds at most.
-const BETWEEN_SIGNALS: usize = 16;
-
-/// A cell with its scene.
-struct Surroundings {
-    cell: Arc<Model>,
-    scene: Scene,
-    /// Index of the operator.
-    operator: usize,
-}
+use crate::session::{BETWEEN_SIGNALS, Surroundings, broken, named, poses_of_rows, share};
 
 self_cell!(
     /// An arm beside the scene that it borrows.
@@ -39,10 +26,8 @@ self_cell!(
     }
 );
 
-impl Surroundings {
-    fn operator(&self) -> &CellOperator {
-        &self.cell.guidance.operators[self.operator]
-    }
+fn operator(surroundings: &Surroundings) -> &CellOperator {
+    &surroundings.cell.guidance.operators[surroundings.index]
 }
 
 /// A robot that a person guides: its tool follows poses and glides along surfaces, shields and guides.
@@ -83,20 +68,16 @@ pub struct GuidedArm {
 
 impl GuidedArm {
     fn begin(cell: &Arc<Model>, operator: usize) -> Result<(Session, Vec<String>), Fault> {
-        let scene = cell.scene_of_guidance()?;
-        let owner = Surroundings { cell: cell.clone(), scene, operator };
         let mut notes = Vec::new();
-        let session = Session::try_new(owner, |owner| owner.operator().arm(&owner.cell, &owner.scene, &mut notes))?;
+        let owner = Surroundings::of(cell, operator)?;
+        let session =
+            Session::try_new(owner, |owner| self::operator(owner).arm(&owner.cell, &owner.scene, &mut notes))?;
         Ok((session, notes.iter().map(ToString::to_string).collect()))
     }
 
     /// The session, for one thread at a time. Call it only where other threads of Python may run, which may hold it.
     fn session(&self) -> Result<MutexGuard<'_, Session>, Fault> {
-        let broken = |_| {
-            let text = "a step of this arm has failed, and where the arm is now is not known\n  write: arm.reset()";
-            Fault::Argument(text.into())
-        };
-        self.session.lock().map_err(broken)
+        self.session.lock().map_err(|_| broken())
     }
 
     fn operator(&self) -> &CellOperator {
@@ -132,7 +113,7 @@ impl Steps {
         self.gap_m.push(step.tool.gap_m.unwrap_or(f64::NAN));
         self.limits.push(step.limit.map(word));
         let Surroundings { cell, .. } = surroundings;
-        self.limited_by.push(step.limit.and_then(|limit| surroundings.operator().limited_by(cell, limit)));
+        self.limited_by.push(step.limit.and_then(|limit| operator(surroundings).limited_by(cell, limit)));
         let force = operated.arm.forces().map_or([f64::NAN; 3], |forces| forces.force_on_hand().to_array());
         self.force_n.extend(force);
     }
@@ -165,38 +146,14 @@ fn word(limit: ArmLimit) -> &'static str {
     }
 }
 
-/// An override from 0 to 1.
-fn share(speed_override: f64) -> Result<f64, Fault> {
-    if (0.0..=1.0).contains(&speed_override) {
-        return Ok(speed_override);
-    }
-    Err(Fault::Argument(format!("`speed_override` is {speed_override}\n  write: a number from 0 to 1")))
-}
-
 #[pymethods]
 impl GuidedArm {
     #[new]
     #[pyo3(signature = (cell, operator=None))]
     fn new(py: Python<'_>, cell: &Bound<'_, Cell>, operator: Option<&str>) -> PyResult<Self> {
         let cell = cell.get().model.clone();
-        let names = || cell.guidance.operators.iter().map(|operator| operator.name.as_str());
-        let found = match (operator, names().count()) {
-            (None, 1) => Some(0),
-            (None, _) => None,
-            (Some(name), _) => names().position(|known| known == name),
-        };
-        let operator = found.ok_or_else(|| {
-            let text = match (operator, names().count()) {
-                (_, 0) => "the cell has no operator\n  write: [operator.NAME] in the cell file".to_owned(),
-                (None, count) => {
-                    format!("the cell has {count} operators\n  write: {}", suggest::hint("", names()))
-                }
-                (Some(name), _) => {
-                    format!("no operator is called \"{name}\"\n  write: {}", suggest::hint(name, names()))
-                }
-            };
-            Fault::Argument(text)
-        })?;
+        let names: Vec<&str> = cell.guidance.operators.iter().map(|operator| operator.name.as_str()).collect();
+        let operator = named("operator", &names, operator)?;
         let (session, notes) = py.detach(|| Self::begin(&cell, operator))?;
         Ok(Self { cell, operator, notes, session: Mutex::new(session) })
     }
@@ -238,8 +195,7 @@ impl GuidedArm {
     fn tool<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let pose =
             py.detach(|| Ok::<_, Fault>(self.session()?.with_dependent(|_, operated| operated.arm.tool_in_world())))?;
-        let rows = pose.to_rows();
-        shaped(&PyArray1::from_vec(py, [rows.as_flattened(), &[0.0, 0.0, 0.0, 1.0]].concat()), [4, 4])
+        matrix(py, &pose)
     }
 
     /// Make a step of `period_s` towards a pose of the hand.
@@ -295,11 +251,7 @@ impl GuidedArm {
         progress: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (py, allowed) = (poses.py(), share(speed_override)?);
-        let wanted = || "(N, 7), float64: x, y, z, quaternion x, y, z, w".to_owned();
-        let rows = Rows::of_width(poses, "poses", 7, &wanted)?;
-        let values = rows.all()?;
-        let poses = values.chunks_exact(7).enumerate().map(|(number, row)| pose(number, row));
-        let poses = poses.collect::<Result<Vec<Pose>, Fault>>()?;
+        let poses = poses_of_rows(poses)?;
         let progress = Progress::new(py, progress, poses.len(), "steps")?;
         let mut steps = Steps::default();
         for part in poses.chunks(BETWEEN_SIGNALS) {
@@ -337,13 +289,4 @@ impl GuidedArm {
         let text = "a guided arm has a state, so it is not copied\n  write: GuidedArm(cell) in each process";
         Err(Fault::Argument(text.into()).into())
     }
-}
-
-/// The pose of a row of seven values.
-fn pose(number: usize, row: &[f64]) -> Result<Pose, Fault> {
-    let rotation = Rotation::from_quaternion_xyzw([row[3], row[4], row[5], row[6]]);
-    let rotation = rotation.ok_or_else(|| {
-        Fault::Array(format!("`poses`: row {number} has a quaternion of length 0\n  write: one of length 1"))
-    })?;
-    Ok(Pose::new(rotation, Vec3::new(row[0], row[1], row[2])))
 }

@@ -15,8 +15,10 @@ mod error;
 mod guided_arm;
 mod joint_map;
 mod kept_checker;
+mod mesh;
 mod model;
 mod monitor;
+mod motion;
 mod page;
 mod places;
 mod planner;
@@ -24,7 +26,10 @@ mod progress;
 mod reach;
 mod robot;
 mod rows;
+mod rules;
 mod run;
+mod session;
+mod virtual_robot;
 
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -44,5 +49,8 @@ fn _elbowroom(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<guided_arm::GuidedArm>()?;
     module.add_class::<joint_map::MapRecord>()?;
     module.add_class::<planner::Planner>()?;
-    module.add_class::<planner::PathRecord>()
+    module.add_class::<planner::PathRecord>()?;
+    module.add_class::<rules::Rules>()?;
+    module.add_class::<virtual_robot::VirtualRobot>()?;
+    module.add_function(wrap_pyfunction!(motion::time_optimal, module)?)
 }

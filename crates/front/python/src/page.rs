@@ -1,12 +1,10 @@
 //! HTML pages that need no network: of a cell, a path, a robot.
 
-use std::path::Path;
-
 use elbowroom::cell::Cell;
-use elbowroom::inspect::{InspectOptions, Inspection};
+use elbowroom::inspect::box_levels;
 use elbowroom::kinematics::JointTrajectory;
-use elbowroom::report::{ReportScene, model_picture, write_html};
-use elbowroom::robot::RobotId;
+use elbowroom::report::{ReportScene, levels_page, write_html};
+use elbowroom::robot::{Robot, RobotId};
 use elbowroom::sim::{Recording, playback, simulate};
 
 use crate::error::Fault;
@@ -16,16 +14,16 @@ pub fn of_recording(cell: &Cell, label: &str, recording: &Recording) -> Result<S
     written(|page| write_html(page, &ReportScene::of_cell(cell), &[(label, recording)]))
 }
 
-/// A cell in which a robot plays a motion, or without one at its start.
-pub fn of_motion(cell: &Cell, label: &str, motion: Option<(RobotId, JointTrajectory)>) -> Result<String, Fault> {
-    let (cell, options) = playback(cell, motion);
+/// A cell in which robots play motions; the others are at their start.
+pub fn of_motions(cell: &Cell, label: &str, motions: Vec<(RobotId, JointTrajectory)>) -> Result<String, Fault> {
+    let (cell, options) = playback(cell, motions);
     of_recording(&cell, label, &simulate(&cell, &options)?.recording)
 }
 
-/// Four views of a robot, with its joints.
-pub fn of_robot(path: &Path, options: &InspectOptions) -> Result<String, Fault> {
-    let inspection = Inspection::of(path, options)?;
-    written(|page| model_picture::write_page(&inspection, None, page))
+/// A robot in 3-D, with a slider per joint.
+pub fn of_robot(robot: &Robot) -> Result<String, Fault> {
+    let levels = box_levels(robot).map_err(|e| Fault::Argument(format!("the page: {e}")))?;
+    written(|page| levels_page::write(page, robot.chain.name(), robot, &levels))
 }
 
 fn written(write: impl FnOnce(&mut Vec<u8>) -> std::io::Result<()>) -> Result<String, Fault> {

@@ -280,7 +280,13 @@ pub struct PathRecord {
 impl PathRecord {
     /// The robot on its path as an HTML page that needs no network; the cell at its start if there is no path.
     fn page(&self, py: Python<'_>) -> PyResult<String> {
-        let page = || page::of_motion(&self.model.with_objects_at(&self.placed), "plan", self.motion.clone());
+        let page = || {
+            page::of_motions(
+                &self.model.with_objects_at(&self.placed),
+                "plan",
+                self.motion.clone().into_iter().collect(),
+            )
+        };
         Ok(py.detach(page)?)
     }
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use elbowroom::formats::robot::{self as files, LoadOptions};
 use elbowroom::formats::suggest;
-use elbowroom::inspect::InspectOptions;
 use elbowroom::kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom::kinematics::{Chain, ChainState, LinkId};
 use elbowroom::robot::Robot as Model;
@@ -16,6 +15,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Rows, vector};
 use crate::error::Fault;
+use crate::mesh::{self, Drawn};
 use crate::page;
 use crate::rows::{map_rows, shaped};
 
@@ -32,15 +32,21 @@ use crate::rows::{map_rows, shaped};
 /// (6, 'tool0')
 /// >>> robot.fk(np.zeros((1, 6)))[0, :3, 3].round(3).tolist()
 /// [0.0, 0.049, 1.006]
-#[pyclass(module = "elbowroom", frozen)]
+#[pyclass(module = "elbowroom", frozen, weakref)]
 pub struct Robot {
     pub(crate) model: Arc<Model>,
     path: PathBuf,
-    /// The same from the root of the file system, for its page and for pickles: by then the present folder may be another.
-    drawn: (PathBuf, InspectOptions),
-    unit: Option<String>,
+    files: Files,
     warnings: Vec<String>,
     joint_names: Vec<String>,
+}
+
+/// The files of a robot from the root of the file system: when it is pickled the present folder may be another.
+struct Files {
+    model: PathBuf,
+    srdf: Option<PathBuf>,
+    unit: Option<String>,
+    joints: Option<PathBuf>,
 }
 
 impl Robot {
@@ -77,18 +83,15 @@ fn read(path: PathBuf, srdf: Option<PathBuf>, unit: Option<String>, joints: Opti
         LoadOptions { srdf: srdf.clone(), unit: known.transpose()?, joints: joints.clone(), ..LoadOptions::default() };
     let loaded = files::load(&path, &options)?;
     let absolute = |file: &PathBuf| std::path::absolute(file).unwrap_or_else(|_| file.clone());
-    let (srdf_file, joints_file) = (srdf.as_ref().map(absolute), joints.as_ref().map(absolute));
-    let inspected = InspectOptions {
-        srdf: srdf_file,
-        unit: options.unit,
-        joints: joints_file,
-        brief: true,
-        ..InspectOptions::default()
+    let files = Files {
+        model: absolute(&path),
+        srdf: srdf.as_ref().map(absolute),
+        unit,
+        joints: joints.as_ref().map(absolute),
     };
-    let drawn = (absolute(&path), inspected);
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
     let joint_names = joint_names(&loaded.robot.chain);
-    Ok(Robot { model: Arc::new(loaded.robot), path, drawn, unit, warnings, joint_names })
+    Ok(Robot { model: Arc::new(loaded.robot), path, files, warnings, joint_names })
 }
 
 #[pymethods]
@@ -120,6 +123,28 @@ impl Robot {
         joints: Option<PathBuf>,
     ) -> PyResult<Self> {
         Ok(py.detach(|| read(path, srdf, unit, joints))?)
+    }
+
+    /// Return the robot of another package.
+    ///
+    /// It is written to a folder of temporary files, which exists as long as the robot does; a pickle does not outlast it.
+    ///
+    /// Parameters
+    /// ----------
+    /// model
+    ///     A `yourdfpy.URDF`, or a `pinocchio.Model` with joints that turn or slide.
+    /// geometry
+    ///     The `pinocchio.GeometryModel` with the solids of a `pinocchio.Model`. Pairs of links none of whose solids it compares are
+    ///     not tested, unless it has no pairs at all.
+    ///
+    /// Raises
+    /// ------
+    /// ArgumentError
+    ///     If the model is of another class, or has a joint or a solid that this package does not know.
+    #[staticmethod]
+    #[pyo3(signature = (model, geometry=None))]
+    fn of<'py>(model: &Bound<'py, PyAny>, geometry: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
+        model.py().import("elbowroom.interop")?.getattr("robot_of")?.call1((model, geometry))
     }
 
     /// The name of the robot in its file.
@@ -268,10 +293,43 @@ impl Robot {
         shaped(&PyArray1::from_vec(py, flat), shape)
     }
 
-    /// The robot as an HTML page that needs no network: four views with its joints.
+    /// The surfaces of the links.
+    ///
+    /// Parameters
+    /// ----------
+    /// kind
+    ///     `"visual"`: what is drawn, the collision geometry where a link has nothing else; or `"collision"`. Curved surfaces are
+    ///     triangles within 1 mm.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     Per link that has a surface its `Mesh`, in the frame of the link.
+    #[pyo3(signature = (kind="visual"))]
+    fn meshes<'py>(&self, py: Python<'py>, kind: &str) -> PyResult<Bound<'py, PyAny>> {
+        Ok(mesh::of_links(py, &self.model, Drawn::parse(kind)?)?.into_any())
+    }
+
+    /// Return the robot as a `trimesh.Scene`, with a node per link.
+    ///
+    /// Parameters
+    /// ----------
+    /// q
+    ///     `(dof,)` joint values; default: zeros, or the nearest values within the limits.
+    /// kind
+    ///     As for `meshes`.
+    #[pyo3(signature = (q=None, kind="visual"))]
+    fn to_trimesh<'py>(
+        slf: &Bound<'py, Self>,
+        q: Option<&Bound<'py, PyAny>>,
+        kind: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("elbowroom.interop")?.getattr("trimesh_of_robot")?.call1((slf, q, kind))
+    }
+
+    /// The robot as an HTML page that needs no network: in 3-D, with a slider per joint and the boxes of its resolution levels.
     fn page(&self, py: Python<'_>) -> PyResult<String> {
-        let (path, options) = &self.drawn;
-        Ok(py.detach(|| page::of_robot(path, options))?)
+        Ok(py.detach(|| page::of_robot(&self.model))?)
     }
 
     fn _repr_html_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -284,8 +342,8 @@ impl Robot {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let (path, options) = &self.drawn;
-        let files = (path, &options.srdf, &self.unit, &options.joints);
+        let Files { model, srdf, unit, joints } = &self.files;
+        let files = (model, srdf, unit, joints);
         py.import("elbowroom.pickles")?.getattr("reduced_robot")?.call1((files,))
     }
 }

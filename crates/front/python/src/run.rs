@@ -5,7 +5,9 @@ use std::sync::Arc;
 use elbowroom::cell::Cell as Model;
 use elbowroom::sim::{Recording, RunOptions, RunSummary, Sample, simulate};
 use numpy::PyArray1;
+use pyo3::PyClass;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::error::Fault;
 use crate::page;
@@ -19,7 +21,14 @@ pub struct RunRecord {
 }
 
 /// Runs the programs of a cell, and returns the `Run` of the package.
-pub fn run<'py>(py: Python<'py>, model: &Arc<Model>, options: &RunOptions) -> PyResult<Bound<'py, PyAny>> {
+///
+/// `cell` is the object of Python that has this model.
+pub fn run<'py>(
+    cell: &Bound<'py, impl PyClass>,
+    model: &Arc<Model>,
+    options: &RunOptions,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = cell.py();
     let outcome = py.detach(|| simulate(model, options).map_err(Fault::from))?;
     let summary = serde_json::to_string(&RunSummary::from(&outcome.recording));
     let summary = summary.map_err(|e| Fault::Argument(format!("the summary of the run: {e}")))?;
@@ -27,7 +36,7 @@ pub fn run<'py>(py: Python<'py>, model: &Arc<Model>, options: &RunOptions) -> Py
     let notes: Vec<String> = outcome.notes.iter().map(ToString::to_string).collect();
     let violated = outcome.has_violation();
     let record = RunRecord { model: model.clone(), recording: outcome.recording };
-    py.import("elbowroom.results")?.getattr("Run")?.call1((summary, violated, notes, record))
+    py.import("elbowroom.results")?.getattr("Run")?.call1((summary, violated, notes, cell, record))
 }
 
 #[pymethods]
@@ -42,6 +51,17 @@ impl RunRecord {
     fn page(&self, py: Python<'_>) -> PyResult<String> {
         let label = if self.recording.monitored { "monitor on" } else { "monitor off" };
         Ok(py.detach(|| page::of_recording(&self.model, label, &self.recording))?)
+    }
+
+    /// The poses of the objects that move or are gripped, `(N, 4, 4)` by name.
+    fn objects<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let by_name = PyDict::new(py);
+        for track in &self.recording.objects {
+            let rows = track.poses.iter().map(|pose| (pose.to_rows(), [0.0, 0.0, 0.0, 1.0]));
+            let values: Vec<f64> = rows.flat_map(|(rows, last)| [rows.as_flattened(), &last].concat()).collect();
+            by_name.set_item(&track.name, shaped(&PyArray1::from_vec(py, values), [track.poses.len(), 4, 4])?)?;
+        }
+        Ok(by_name)
     }
 
     /// Every tick of a robot, as an `elbowroom.results.Trace`.

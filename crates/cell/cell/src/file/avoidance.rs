@@ -9,7 +9,7 @@ use super::mechanism;
 use super::robot::robot_of;
 use super::schema::{AVOIDANCE, names};
 use super::tools::with_exchanged_tools;
-use crate::{AvoidanceSpec, Cell, Units};
+use crate::{AvoidanceSpec, Cell, Units, parse_rules};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -179,5 +179,5 @@ fn rules(v: &Value<'_>) -> Result<Rules> {
         v.error(format!("names {}, which cannot be read: {e}", path.display()))
             .hint("rules = \"my_rules.toml\", written by `elbowroom rules --write my_rules.toml`")
     })?;
-    Rules::from_toml(&text).map_err(|e| Diagnostic::new(&path, e.line, e.message).hint(e.hint))
+    parse_rules(&path, &text)
 }

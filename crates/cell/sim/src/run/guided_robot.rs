@@ -8,7 +8,6 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneError, SceneState};
 use elbowroom_spatial::Pose;
 
-use super::tick_time::next_tick_time_s;
 use crate::recording::{ForceSample, GuidanceSample, GuidanceState, GuidanceTrack, RunEvent};
 
 /// Speed of the tool point from which a tool in contact glides, m/s.
@@ -92,7 +91,7 @@ impl<'s> GuidedRobot<'s> {
         }
         // Where the hand leads in the next tick, also while the override lets nothing move: it may lead away from a region.
         // Where it leads now, a tool that keeps up with it has arrived.
-        let next = pose_of(self.operator.stream.at(next_tick_time_s(t_s, tick_s)));
+        let next = pose_of(self.operator.stream.at(cell.timing.after(t_s)));
         arm.intent(next.as_ref(), tick_s, &mut self.intent);
         let tool_in_world = arm.tool_in_world();
         let is_at_rest = self.velocity.iter().all(|v| *v == 0.0);

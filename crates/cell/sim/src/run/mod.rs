@@ -25,7 +25,6 @@ mod sensor_guards;
 mod simulated_robot;
 mod simulation;
 mod stop_state;
-mod tick_time;
 mod virtual_robot;
 mod zone_claims;
 

@@ -18,7 +18,6 @@ use super::options::{RunOptions, RunProgress};
 use super::own_motion::OwnMotion;
 use super::region_recorder::RegionRecorder;
 use super::simulated_robot::{Governed, SimulatedRobot};
-use super::tick_time::tick_time_s;
 use super::virtual_robot::CooperatingRobots;
 use crate::motion::RegionSwitch;
 use crate::recording::{RunEnd, RunEvent};
@@ -57,7 +56,7 @@ impl Simulation<'_> {
         self.hold_work_pieces()?;
         let mut tick = 0_u64;
         loop {
-            let t_s = tick_time_s(tick, self.cell.timing.tick_s);
+            let t_s = self.cell.timing.at(tick);
             if tick.is_multiple_of(256) {
                 let finished = self.robots.iter().filter(|robot| robot.clock.finished()).count();
                 progress(RunProgress { t_s, finished, robots: self.robots.len() });

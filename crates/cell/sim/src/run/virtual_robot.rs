@@ -1,7 +1,7 @@
 //! Robots that act as one in a run.
 
-use elbowroom_cell::cooperation::{HandedOver, Hold, HoldLimit, VirtualRobot};
-use elbowroom_cell::{Cell, CellRobot, CellVirtualRobot, OperatorInput};
+use elbowroom_cell::cooperation::VirtualRobot;
+use elbowroom_cell::{Cell, CellVirtualRobot, OperatorInput};
 use elbowroom_diagnostic::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_robot::RobotId;
@@ -117,7 +117,7 @@ impl<'s> CooperatingRobots<'s> {
         let tick_s = cell.timing.tick_s;
         let step = self.robot.step(tick_s, overrides);
         if let Some(handed_over) = step.handed_over {
-            let reason = in_words(cell, self.spec, &handed_over);
+            let reason = self.spec.hand_over_in_words(cell, &handed_over);
             self.track.hand_overs.push(HandOverRecord { t_s, from: handed_over.from, to: handed_over.to, reason });
             event(members[handed_over.to], RunEvent::HandOver);
         }
@@ -131,7 +131,7 @@ impl<'s> CooperatingRobots<'s> {
         let holder = self.robot.holder();
         if let Some(hold) = step.hold.filter(|_| !self.is_held) {
             event(members[holder], RunEvent::Hold);
-            let reason = hold_in_words(cell, self.spec, &hold);
+            let reason = self.spec.hold_in_words(cell, &hold);
             self.track.stops.push(WorkPieceStop { from_s: t_s, to_s: f64::INFINITY, reason });
         }
         let is_held = step.hold.is_some();
@@ -217,55 +217,4 @@ impl<'s> CooperatingRobots<'s> {
         self.track.carried_share = if whole_s > 0.0 { done_s / whole_s } else { 1.0 };
         self.track
     }
-}
-
-/// What an arm comes to.
-fn limit_in_words(cell: &Cell, spec: &CellVirtualRobot, robot: &CellRobot, limit: &HoldLimit) -> String {
-    let joint = |index: usize| robot.joint_names().get(index).cloned().unwrap_or_default();
-    match *limit {
-        HoldLimit::Reach => "comes to the end of its reach".to_owned(),
-        HoldLimit::JointRange(index) => format!("comes to the limit of {}", joint(index)),
-        HoldLimit::JointSpeed(index) => format!("needs more than the speed of {}", joint(index)),
-        HoldLimit::Singularity => "comes near a singularity".to_owned(),
-        HoldLimit::Retreat => "could not let go any more".to_owned(),
-        HoldLimit::OtherArm => "has no room beside the other robot".to_owned(),
-        HoldLimit::Hidden => {
-            let camera = spec.view.as_ref().map_or("", |view| view.camera.as_str());
-            format!("would hide {} from camera {camera}", cell.objects[spec.work_piece.0].name)
-        }
-        HoldLimit::Contact(a, b) => format!("would bring {} and {} together", cell.part_name(a), cell.part_name(b)),
-    }
-}
-
-/// Why the work-piece stands.
-fn hold_in_words(cell: &Cell, spec: &CellVirtualRobot, hold: &Hold) -> String {
-    match hold {
-        Hold::Override => "a monitor has stopped a robot that carries it".to_owned(),
-        Hold::Limit(member, limit) => {
-            let robot = &cell.robots[spec.members[*member].robot.0];
-            format!("{} {}", robot.name, limit_in_words(cell, spec, robot, limit))
-        }
-        Hold::Paused => "nothing is desired: the operator is not enabled, or the last row is old".to_owned(),
-        Hold::InTheWay(member) => format!("{} is in the way", cell.robots[spec.members[*member].robot.0].name),
-        Hold::Contact(a, b) => format!("{} and {} would touch", cell.part_name(*a), cell.part_name(*b)),
-        Hold::Unproven => "a motion could not be proven free".to_owned(),
-        Hold::Input => "a step without a duration".to_owned(),
-    }
-}
-
-/// Why a hand-over was decided.
-fn in_words(cell: &Cell, spec: &CellVirtualRobot, handed_over: &HandedOver) -> String {
-    let robot = |member: usize| &cell.robots[spec.members[member].robot.0];
-    let (giver, receiver, reason) = (robot(handed_over.from), robot(handed_over.to), &handed_over.reason);
-    let limit = reason.limit.map_or_else(|| "goes on".to_owned(), |limit| limit_in_words(cell, spec, giver, &limit));
-    let can = if reason.limit == Some(HoldLimit::Hidden) { "keeps it in view" } else { "can hold" };
-    let holds = if reason.receiver_holds_s.is_finite() {
-        format!("{can} {:.1} s", reason.receiver_holds_s)
-    } else {
-        format!("{can} as long as is foreseen")
-    };
-    format!(
-        "{} {limit} in {:.1} s; {} {holds}; hand-over {:.1} s",
-        giver.name, reason.giver_holds_s, receiver.name, reason.takes_s
-    )
 }
