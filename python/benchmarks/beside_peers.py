@@ -4,13 +4,16 @@ pip install pin python-fcl; then python python/benchmarks/beside_peers.py ROBOT.
 
 Every library has the same meshes, the pairs that the SRDF leaves, and the same random states within the limits. Python calls pinocchio once
 per state, python-fcl once per pair, and elbowroom once for all states. Where a library needs more than a minute it gets fewer states.
+With --rust PROGRAM, which `cargo bench -p elbowroom-query --bench row_times --no-run` names, the library is timed on the same states.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -119,10 +122,32 @@ def timed(answer: Answer, q: States) -> tuple[npt.NDArray[Any], float]:
     return found, 1e6 * (time.perf_counter() - begin) / len(rows)
 
 
-def measure(urdf: Path, srdf: Path, rows: int) -> None:
+def beside_rust(program: Path, urdf: Path, srdf: Path, q: States, checker: er.Checker) -> None:
+    """Print the time of a state in Python and in Rust, the least of five turns each."""
+    questions: dict[str, tuple[Answer, list[float], list[float]]]
+    questions = {"collision": (checker.collides, [], []), "distance": (checker.distance, [], [])}
+    with tempfile.NamedTemporaryFile() as states:
+        q.astype("<f8").tofile(states.name)
+        for _ in range(5):
+            told = subprocess.run([program, urdf, srdf, states.name], check=True, capture_output=True, text=True).stdout
+            for line in told.splitlines():
+                name, microseconds = line.split()
+                answer, ours, theirs = questions[name]
+                theirs.append(float(microseconds))
+                begin = time.perf_counter()
+                answer(q)
+                ours.append(1e6 * (time.perf_counter() - begin) / len(q))
+    for name, (_, ours, theirs) in questions.items():
+        python, rust = min(ours), min(theirs)
+        print(f"  {name:10} of a state: Python {python:.3f} us, Rust {rust:.3f} us, {100 * (python / rust - 1):+.1f} %")
+
+
+def measure(urdf: Path, srdf: Path, rows: int, rust: Path | None) -> None:
     """Print a line per library and question."""
     robot = er.Robot.load(urdf, srdf)
     q = np.random.default_rng(1).uniform(*robot.limits.T, (rows, robot.dof))
+    if rust is not None:
+        return beside_rust(rust, urdf, srdf, q, er.Checker(robot, threads=1))
     one, two = er.Checker(robot, threads=1), er.Checker(robot, threads=2)
     collides, distance, model, geometry = pinocchio_answers(urdf, srdf, robot.joints)
     fcl_collides, fcl_distance = fcl_answers(model, geometry, robot.joints)
@@ -158,12 +183,13 @@ def main() -> None:
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("files", nargs="+", type=Path, help="ROBOT.urdf ROBOT.srdf …")
     words.add_argument("--rows", type=int, default=100_000)
+    words.add_argument("--rust", type=Path, help="the bench row_times: compare with it alone")
     found = words.parse_args()
     if len(found.files) % 2:
         sys.exit("a URDF and an SRDF for each robot")
     print(f"elbowroom {er.__version__}, {os.cpu_count()} processors")
     for urdf, srdf in zip(found.files[::2], found.files[1::2], strict=True):
-        measure(urdf, srdf, found.rows)
+        measure(urdf, srdf, found.rows, found.rust)
 
 
 if __name__ == "__main__":

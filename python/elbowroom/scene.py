@@ -32,7 +32,7 @@ class Scene:
     """Robots and objects at their places, without a file.
 
     `cell` makes a `Cell` of it, for checkers, planners, maps and runs; `save` writes the cell file, which regions and programs can be
-    added to. Every table of the cell file can be set here too. Lengths are metres and angles radians. Other files are `pathlib.Path`s:
+    added to. Every table of the cell file can be set here too. Lengths are metres and angles radians. Other files are `pathlib.Path` objects:
     of the present folder, and relative to the cell file in it; text is written as it is.
 
     Parameters

@@ -37,7 +37,7 @@ class Trajectory:
     >>> import elbowroom as er
     >>> there = er.Trajectory.time_optimal([[0, 0], [1, 0], [1, 1]], velocity=1.0, acceleration=4.0, jerk=40.0, blend=0.2)
     >>> round(there.duration_s, 2), there.at(there.duration_s).round(9).tolist()
-    (2.39, [1.0, 1.0])
+    (2.49, [1.0, 1.0])
     """
 
     __slots__ = ("joints", "q", "times_s")

@@ -21,9 +21,20 @@ pub const MATPLOTLIB: &str = "matplotlib==3.11.2";
 /// Sequences of states of sweeps.
 pub const SCIPY: &str = "scipy==1.17.1";
 
+/// Kinematics and distances to compare with, and models of another package.
+pub const PINOCCHIO: &str = "pin==4.1.0";
+/// Meshes of another package.
+pub const TRIMESH: &str = "trimesh==5.2.0";
+/// Models of another package.
+pub const YOURDFPY: &str = "yourdfpy==0.0.60";
+/// Where scenes and motions can be logged.
+pub const RERUN: &str = "rerun-sdk==0.41.0";
+/// Builds the documentation site.
+pub const SPHINX: &str = "sphinx==9.0.4";
+
 /// Pinned, so that a test compares with the same reference everywhere.
-const PACKAGES: [&str; 12] = [
-    "pin==4.1.0",
+const PACKAGES: [&str; 14] = [
+    PINOCCHIO,
     "numpy==2.4.6",
     "mcap==1.6.0",
     "mcap-ros2-support==0.6.0",
@@ -35,6 +46,8 @@ const PACKAGES: [&str; 12] = [
     RAY,
     SCIPY,
     MATPLOTLIB,
+    TRIMESH,
+    YOURDFPY,
 ];
 
 /// Checks that the pinned versions are installed.
@@ -44,7 +57,8 @@ assert pinocchio.__version__ == '4.1.0' and numpy.__version__ == '2.4.6'
 assert (version('mcap'), version('mcap-ros2-support'), version('rosbags')) == ('1.6.0', '0.6.0', '0.11.9')
 assert (version('pytest'), version('hypothesis'), version('mypy')) == ('9.2.0', '6.170.17', '2.4.1')
 assert (version('pyarrow'), version('ray'), version('scipy')) == ('26.0.1', '2.60.0', '1.17.1')
-assert version('matplotlib') == '3.11.2'";
+assert version('matplotlib') == '3.11.2'
+assert (version('trimesh'), version('yourdfpy')) == ('5.2.0', '0.0.60')";
 
 /// Path of the interpreter inside `target/venv`, whether or not it exists.
 pub fn interpreter(root: &Path) -> PathBuf {

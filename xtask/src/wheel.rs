@@ -48,6 +48,11 @@ pub fn run(root: &Path, manylinux: bool) -> Result<(), String> {
         python::RAY,
         python::SCIPY,
         python::MATPLOTLIB,
+        python::PINOCCHIO,
+        python::TRIMESH,
+        python::YOURDFPY,
+        python::RERUN,
+        python::SPHINX,
     ];
     let python = python::environment(root, &target.join("wheel/test"), &packages, &[])?;
     let python = python.to_string_lossy().into_owned();
