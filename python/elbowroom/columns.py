@@ -20,6 +20,8 @@ def columns(first: npt.ArrayLike, second: npt.ArrayLike) -> tuple[npt.NDArray[np
         a, b = np.broadcast_arrays(np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64))
     except (TypeError, ValueError) as error:
         raise ArrayError(f"the arguments: {error}\n  write: numbers, or arrays whose shapes fit") from error
+    if not (np.isfinite(a).all() and np.isfinite(b).all()):
+        raise ArrayError("an argument has values that are not finite\n  write: finite numbers")
     return np.stack([a.ravel(), b.ravel()], axis=1), a.shape
 
 

@@ -15,14 +15,17 @@ import numpy.typing as npt
 
 from elbowroom import _elbowroom
 from elbowroom.columns import state
-from elbowroom.errors import ArgumentError
+from elbowroom.errors import ArgumentError, FileError
 from elbowroom.optional import imported
 from elbowroom.pinocchio_model import write_pinocchio
 
 if TYPE_CHECKING:
     from elbowroom.results import Mesh
 
-__all__ = ["robot_of", "trimesh_of_cell", "trimesh_of_robot"]
+__all__ = ["robot_of", "temporary_folder", "trimesh_of_cell", "trimesh_of_robot"]
+
+#: Begin of the names of folders of robots of other packages.
+_PREFIX = "elbowroom-robot-"
 
 
 def trimesh_of_robot(robot: _elbowroom.Robot, q: npt.ArrayLike | None, kind: str) -> Any:
@@ -52,17 +55,28 @@ def _scene(meshes: Mapping[str, Mesh], poses: Mapping[str, npt.NDArray[np.float6
 
 def robot_of(model: Any, geometry: Any = None) -> _elbowroom.Robot:
     """Return the robot of a model of another package, from a folder that is removed with it."""
+    if geometry is None and hasattr(model, "model") and hasattr(model, "collision_model"):
+        model, geometry = model.model, model.collision_model  # A RobotWrapper of pinocchio.
     write = _writer(model, geometry)
-    folder = Path(tempfile.mkdtemp(prefix="elbowroom-")).resolve()
+    folder = Path(tempfile.mkdtemp(prefix=_PREFIX)).resolve()
     try:
         write(folder)
         srdf = folder / "robot.srdf"
         robot = _elbowroom.Robot.load(folder / "robot.urdf", srdf if srdf.exists() else None)
-    except BaseException:
+    except BaseException as error:
         shutil.rmtree(folder, ignore_errors=True)
+        if isinstance(error, FileError) and Path(error.file).is_relative_to(folder):
+            # That file is gone.
+            hint = f"\n  write: {error.hint}" if error.hint else ""
+            raise ArgumentError(f"the model of {type(model).__module__.split('.')[0]} {error.message}{hint}") from None
         raise
     weakref.finalize(robot, shutil.rmtree, folder, ignore_errors=True)
     return robot
+
+
+def temporary_folder(model: Path) -> Path | None:
+    """Return the folder of the file of a robot if it is removed with the robot."""
+    return model.parent if model.parent.name.startswith(_PREFIX) and model.name == "robot.urdf" else None
 
 
 def _writer(model: Any, geometry: Any) -> Callable[[Path], None]:
@@ -70,7 +84,8 @@ def _writer(model: Any, geometry: Any) -> Callable[[Path], None]:
     classes = {f"{kind.__module__.split('.')[0]}.{kind.__name__}" for kind in type(model).__mro__}
     if "yourdfpy.URDF" in classes and geometry is None:
         return lambda folder: _write_yourdfpy(model, folder)
-    if classes & {"pinocchio.Model", "Boost.Model"} or hasattr(model, "jointPlacements") and hasattr(model, "joints"):
+    is_geometry = geometry is None or hasattr(geometry, "geometryObjects")
+    if hasattr(model, "jointPlacements") and hasattr(model, "joints") and is_geometry:
         return lambda folder: write_pinocchio(model, geometry, folder)
     name = f"{type(model).__module__}.{type(model).__name__}"
     more = "" if geometry is None else f" with geometry of {type(geometry).__name__}"
@@ -90,8 +105,11 @@ def _write_yourdfpy(model: Any, folder: Path) -> None:
             ElementTree.SubElement(joint, "mimic", {"joint": leader.joint, **keys})
     for mesh in _meshes(root):
         name = mesh.get("filename", "")
-        found = Path(model._filename_handler(name))
-        mesh.set("filename", str(found.resolve() if found.exists() else name))
+        found = Path(str(model._filename_handler(name)))
+        if not found.exists():
+            hint = "yourdfpy.URDF.load(…, filename_handler=…), which returns where each mesh is"
+            raise ArgumentError(f'yourdfpy does not find the mesh "{name}"\n  write: {hint}')
+        mesh.set("filename", str(found.resolve()))
     ElementTree.ElementTree(root).write(folder / "robot.urdf", encoding="utf-8", xml_declaration=True)
 
 

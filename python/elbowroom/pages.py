@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Protocol
 
 from elbowroom.errors import ArgumentError
+from elbowroom.files import written
 
 __all__ = ["Paged", "frame", "save", "show"]
 
@@ -32,9 +33,7 @@ def save(source: Paged, file: str | Path) -> Path:
     if page is None:
         name = type(source).__name__
         raise ArgumentError(f"a {name} has no page\n  write: a Robot, a Cell, a Path or a Run")
-    path = Path(file)
-    path.write_text(page(), encoding="utf-8")
-    return path
+    return written(Path(file), page())
 
 
 def show(source: Paged) -> Path:

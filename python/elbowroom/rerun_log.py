@@ -26,17 +26,16 @@ def log_cell(cell: Cell, motions: Mapping[str, Trajectory] | None = None, stream
     """Log a cell; robots with a trajectory move, the others stay at their start."""
     rerun = imported("rerun")
     _log_meshes(rerun, cell, stream)
-    given = {} if motions is None else motions
-    unknown = [name for name in given if name not in cell.robots]
-    if unknown:
-        raise ArgumentError(f'no robot is called "{unknown[0]}"\n  write: one of {", ".join(cell.robots)}')
-    times = np.unique(np.concatenate([[0.0], *(motion.times_s for motion in given.values())]))
+    given = {} if motions is None else dict(motions)
+    wrong = [name for name, motion in given.items() if not isinstance(motion, Trajectory)]
+    if wrong:
+        raise ArgumentError(f'the motion of "{wrong[0]}" is a {type(given[wrong[0]]).__name__}\n  write: a Trajectory')
+    columns = {name: cell.columns(name) for name in given}
+    ordered = {name: motion.ordered(cell.joints_of(name)) for name, motion in given.items()}
+    times = np.unique(np.concatenate([[0.0], *(motion.times_s for motion in ordered.values())]))
     states = np.repeat(cell.start[None, :], len(times), axis=0)
-    for name, motion in given.items():
-        columns = [k for k, joint in enumerate(cell.joints) if joint.startswith(f"{name}.")]
-        if len(columns) != motion.q.shape[1]:
-            raise ArgumentError(f'the trajectory of "{name}" has {motion.q.shape[1]} joints\n  write: one of {len(columns)}')
-        states[:, columns] = motion.at(times)
+    for name, motion in ordered.items():
+        states[:, columns[name]] = motion.at(times)
     _log_poses(rerun, cell.fk(states), times, stream)
 
 
@@ -59,11 +58,8 @@ def _log_meshes(rerun: Any, cell: Cell, stream: Any) -> None:
     for name, mesh in cell.meshes().items():
         triangles = rerun.Mesh3D(vertex_positions=mesh.vertices, triangle_indices=mesh.faces)
         rerun.log(f"cell/{name}/mesh", triangles, static=True, recording=stream)
-        place = places[name]
-        at = rerun.Transform3D(translation=place[:3, 3], mat3x3=place[:3, :3])
-        # Not static, which would hide where it is later.
-        rerun.set_time(_TIMELINE, duration=0.0, recording=stream)
-        rerun.log(f"cell/{name}", at, recording=stream)
+    # Rows of time 0, and nothing static, which would hide where it is later.
+    _log_poses(rerun, {name: of[None] for name, of in places.items()}, np.zeros(1), stream)
 
 
 def _log_poses(rerun: Any, poses: Mapping[str, npt.NDArray[np.float64]], times: npt.NDArray[np.float64], stream: Any) -> None:

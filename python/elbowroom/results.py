@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elbowroom.errors import ArgumentError
+from elbowroom.files import written
 from elbowroom.pages import frame
 from elbowroom.poses import PoseLike
 from elbowroom.rerun_log import log_run
@@ -332,7 +333,7 @@ class Run:
         """Return the report, and write it to a file."""
         page = self.page()
         if file is not None:
-            _File(file).write_text(page, encoding="utf-8")
+            written(_File(file), page)
         return page
 
     def trace(self, robot: str | None = None) -> Trace:

@@ -19,6 +19,8 @@ import numpy.typing as npt
 from elbowroom import poses
 from elbowroom._elbowroom import Cell, Robot
 from elbowroom.errors import ArgumentError, ArrayError, FileError
+from elbowroom.files import unwritable
+from elbowroom.interop import temporary_folder
 from elbowroom.pickles import files_of_robot
 from elbowroom.poses import PoseLike
 
@@ -60,6 +62,7 @@ class Scene:
         self.name = name
         self._keys = _own(keys)
         self._tables: dict[str, dict[str, dict[str, Any]]] = {}
+        self._robots: dict[str, Robot] = {}
 
     def add_robot(
         self,
@@ -86,6 +89,8 @@ class Scene:
             Further keys of `[robot.NAME]` in a cell file, such as `start=[0.0, 0.5, …]` or `flange="tool0"`.
         """
         if isinstance(robot, Robot):
+            # The files of a robot of another package are there as long as it is.
+            self._robots[name] = robot
             model, own_srdf, unit, joints = files_of_robot(robot)
         else:
             model, own_srdf, unit, joints = _absolute(robot), None, None, None
@@ -203,9 +208,9 @@ class Scene:
         return cell
 
     def save(self, file: str | os.PathLike[str]) -> Cell:
-        """Write the cell file, with a file beside it for each mesh that has none, and return the cell.
+        """Write the cell file, with a file beside it for each mesh that has none and a folder for each robot of another package.
 
-        A file that is there is replaced only by one that can be loaded. Files of meshes are named after their contents.
+        A file that is there is replaced only by one that can be loaded. Files of meshes are named after their contents. Returns the cell.
 
         Raises
         ------
@@ -221,8 +226,7 @@ class Scene:
                 _loaded(new)
                 new.replace(path)
         except OSError as error:
-            hint = "a file in a folder that exists and can be written to"
-            raise FileError(f"{path}: cannot be written: {error}\n  write: {hint}", str(path), None, str(error), hint) from error
+            raise unwritable(path, error) from error
         finally:
             if new != path:
                 new.unlink(missing_ok=True)
@@ -375,6 +379,12 @@ class _Writer:
         return file.name
 
     def _relative(self, file: Path) -> str:
+        folder = temporary_folder(file) or temporary_folder(file.with_name("robot.urdf"))
+        if folder is not None and not self._path.is_relative_to(folder):
+            # That folder does not last as long as the cell file.
+            kept = self._path.with_name(f"{self._path.stem}.{folder.name.removeprefix('elbowroom-')}")
+            shutil.copytree(folder, kept, dirs_exist_ok=True)
+            file = kept / file.name
         if ".." in file.parts:  # Where a link leads cannot be said from its name.
             return file.as_posix()
         try:

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from elbowroom import _elbowroom
 from elbowroom.columns import numbers
 from elbowroom.errors import ArgumentError, ArrayError, FileError
+from elbowroom.files import written
 
 __all__ = ["Trajectory"]
 
@@ -56,9 +57,14 @@ class Trajectory:
             row = int(np.argmin(later)) + 1
             raise ArrayError(f"`times_s`: row {row} is not later than the one before\n  write: increasing times, seconds")
         #: The names of the joints.
-        self.joints = [f"joint_{index + 1}" for index in range(self.q.shape[1])] if joints is None else list(joints)
+        self.joints = _default_names(self.q.shape[1]) if joints is None else list(joints)
         if len(self.joints) != self.q.shape[1]:
             raise ArgumentError(f"{len(self.joints)} names of {self.q.shape[1]} joints\n  write: a name per column of `q`")
+        for name in self.joints:
+            if not isinstance(name, str) or not name or name.strip() != name or set(name) & set(',"\r\n'):
+                raise ArgumentError(f"a joint is called {name!r}\n  write: names without commas, quotes and ends of lines")
+        if len(set(self.joints)) != len(self.joints):
+            raise ArgumentError(f"two joints have the same name: {', '.join(self.joints)}\n  write: names that differ")
 
     @classmethod
     def time_optimal(
@@ -92,7 +98,7 @@ class Trajectory:
         """
         points = _numbers("waypoints", waypoints, 2)
         dof = points.shape[1]
-        names = [f"joint_{index + 1}" for index in range(dof)] if joints is None else list(joints)
+        names = _default_names(dof) if joints is None else list(joints)
         rates = [_per_joint(name, value, dof) for name, value in (("velocity", velocity), ("acceleration", acceleration), ("jerk", jerk))]
         distance = _number("blend", blend, "rad or m, 0 or more")
         if not distance >= 0.0:
@@ -110,7 +116,7 @@ class Trajectory:
             return FileError(f"{place}: {message}\n  write: {hint}", str(path), line, message, hint)
 
         try:
-            lines = list(csv.reader(path.read_text(encoding="utf-8").splitlines()))
+            lines = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
         except (OSError, UnicodeDecodeError) as error:
             raise refused(None, f"cannot be read: {error}", "a CSV file with the columns t_s and one per joint") from error
         header = [name.strip() for name in lines[0]] if lines else []
@@ -126,6 +132,8 @@ class Trajectory:
                 raise refused(line, str(error), "numbers: seconds, and rad or m") from error
             if len(row) != len(header) or not np.isfinite(rows[-1]).all():
                 raise refused(line, f"has {len(row)} values", f"{len(header)} finite numbers: {', '.join(header)}")
+            if len(rows) > 1 and rows[-1][0] <= rows[-2][0]:
+                raise refused(line, "is not later than the row before", "increasing times, seconds")
         if not rows:
             raise refused(len(lines), "has no row", "at least one row below the names of the columns")
         values = np.array(rows)
@@ -136,8 +144,7 @@ class Trajectory:
         path = Path(file)
         lines = [",".join(["t_s", *self.joints])]
         lines += [",".join(map(repr, [t_s, *q])) for t_s, q in zip(self.times_s.tolist(), self.q.tolist(), strict=True)]
-        path.write_text("\n".join([*lines, ""]), encoding="utf-8")
-        return path
+        return written(path, "\n".join([*lines, ""]))
 
     @property
     def duration_s(self) -> float:
@@ -163,7 +170,7 @@ class Trajectory:
     def resampled(self, period_s: float) -> Trajectory:
         """Return the trajectory at every `period_s`, and at its end."""
         period = _number("period_s", period_s, "seconds above 0")
-        if not period > 0.0:
+        if not 0.0 < period < float("inf"):
             raise ArgumentError(f"`period_s` is {period_s}\n  write: seconds above 0")
         first, last = float(self.times_s[0]), float(self.times_s[-1])
         count = (last - first) / period
@@ -172,6 +179,17 @@ class Trajectory:
         times = first + period * np.arange(int(np.floor(count * (1 - 1e-12))) + 1)
         times = np.append(times[times < last], last)
         return Trajectory(times, self.at(times), self.joints)
+
+    def ordered(self, joints: Iterable[str]) -> Trajectory:
+        """Return the trajectory with the joints in another order; one whose joints were not named has them in this order already."""
+        names = list(joints)
+        if not all(isinstance(name, str) for name in names):
+            raise ArgumentError(f"the names are {names!r}\n  write: names of joints")
+        if sorted(names) == sorted(self.joints):
+            return Trajectory(self.times_s, self.q[:, [self.joints.index(name) for name in names]], names)
+        if len(names) == len(self.joints) and self.joints == _default_names(len(names)):
+            return Trajectory(self.times_s, self.q, names)
+        raise ArgumentError(f"the trajectory is of {', '.join(self.joints)}\n  write: one of {', '.join(names)}")
 
     def reversed(self) -> Trajectory:
         """Return the way back, over the same times."""
@@ -193,6 +211,10 @@ class Trajectory:
     def __repr__(self) -> str:
         """Say how long it is."""
         return f"Trajectory({len(self)} rows, {self.duration_s:g} s, {len(self.joints)} joints)"
+
+
+def _default_names(dof: int) -> list[str]:
+    return [f"joint_{index + 1}" for index in range(dof)]
 
 
 def _numbers(name: str, values: Any, dimensions: int) -> _Numbers:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import pickle
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -85,12 +86,12 @@ def test_a_model_of_pinocchio_is_the_robot(mixed: Path) -> None:
     geometry = pinocchio.buildGeomFromUrdf(model, str(mixed), pinocchio.GeometryType.COLLISION)
     expected = er.Robot.load(mixed)
     found = er.Robot.of(model, geometry)
-    links = ["tower", "sledge", "arm", "left", "right"]
-    # That joint turns without end.
-    check_same(expected, found, {link: link for link in links}, limits=False)
+    assert set(found.links) == set(expected.links) and found.tip == expected.tip
+    # One joint turns without end.
+    check_same(expected, found, {link: link for link in expected.links}, limits=False)
     of = [found.limits[found.joints.index(name)] for name in ("lift", "swing", "finger")]
     assert np.allclose(of, [[-0.1, 0.3], [-2.0, 1.0], [0.0, 0.04]], rtol=1e-15, atol=0.0)
-    # The solids are where those of the file are; those of links without a joint between are in one link.
+    # The solids are where those of the file are.
     q = states(expected, 200)
     order = [expected.joints.index(joint) for joint in found.joints]
     distances = er.Checker(found).witness(q[:, order].copy()).distance_m
@@ -126,13 +127,96 @@ def test_a_robot_of_another_package_has_its_files_while_it_lives(mixed: Path, tm
     robot = er.Robot.of(yourdfpy.URDF.load(str(mixed), load_meshes=False, build_scene_graph=False))
     copied = pickle.loads(pickle.dumps(robot))
     assert copied.links == robot.links and robot.page().startswith("<!DOCTYPE html>")
+    folder = Path(robot.__reduce__()[1][0][0]).parent
     scene = er.Scene()
     scene.add_robot("arm", robot)
-    assert scene.cell().robots == ["arm"]
-    folder = Path(robot.__reduce__()[1][0][0]).parent
-    assert folder.is_dir()
     del robot
+    # A scene needs it.
+    assert scene.cell().robots == ["arm"] and folder.is_dir()
+    del scene
     assert not folder.exists()
+
+
+def three_joints() -> Any:
+    """A model of pinocchio of three joints at one place, and its module."""
+    pinocchio = pytest.importorskip("pinocchio")
+    model, joint = pinocchio.Model(), 0
+    limits = (np.ones(1), np.ones(1), -np.ones(1), np.ones(1))
+    for name, kind in (("a", pinocchio.JointModelRX), ("b", pinocchio.JointModelRY), ("c", pinocchio.JointModelRZ)):
+        joint = model.addJoint(joint, kind(), pinocchio.SE3.Identity(), name, *limits)
+    return pinocchio, model
+
+
+def geometry_of(pinocchio: Any, solids: list[tuple[str, int, Any, float]], pairs: list[tuple[int, int]]) -> Any:
+    """Solids with the heights at which they are in the frame of a joint, and the pairs that are compared."""
+    geometry = pinocchio.GeometryModel()
+    for name, joint, shape, height in solids:
+        geometry.addGeometryObject(pinocchio.GeometryObject(name, joint, pinocchio.SE3(np.eye(3), np.array([0.0, 0.0, height])), shape))
+    for a, b in pairs:
+        geometry.addCollisionPair(pinocchio.CollisionPair(a, b))
+    return geometry
+
+
+def test_pairs_of_pinocchio_are_tested_or_refused() -> None:
+    pinocchio, model = three_joints()
+    coal = pytest.importorskip("coal")
+    base, far, near = ("base", 0, coal.Box(0.1, 0.1, 0.1), 0.0), ("far", 3, coal.Sphere(0.05), 1.4), ("near", 3, coal.Sphere(0.5), 0.0)
+    still = np.zeros((1, 3))
+    alone = er.Checker(er.Robot.of(model, geometry_of(pinocchio, [base, far], [(0, 1)])))
+    assert alone.distance(still)[0] == pytest.approx(1.3)
+    # Solids of one link of which some are compared and others not.
+    with pytest.raises(er.ArgumentError, match="are compared and others not"):
+        er.Robot.of(model, geometry_of(pinocchio, [base, far, near], [(0, 1)]))
+    # One that is switched off counts as not there.
+    geometry = geometry_of(pinocchio, [base, far, near], [(0, 1), (0, 2)])
+    assert er.Checker(er.Robot.of(model, geometry)).collides(still)[0]
+    geometry.geometryObjects[2].disableCollision = True
+    assert er.Checker(er.Robot.of(model, geometry)).distance(still)[0] == pytest.approx(1.3)
+    # Neighbours, and solids of one joint, are no pairs.
+    for joints in ((0, 1), (1, 2), (2, 2)):
+        solids = [(f"s{k}", joint, coal.Sphere(0.1), 0.0) for k, joint in enumerate(joints)]
+        with pytest.raises(er.ArgumentError, match="at most one joint is between them"):
+            er.Robot.of(model, geometry_of(pinocchio, solids, [(0, 1)]))
+    box = coal.Box(0.1, 0.1, 0.1)
+    box.setSweptSphereRadius(0.2)
+    with pytest.raises(er.ArgumentError, match="swept sphere"):
+        er.Robot.of(model, geometry_of(pinocchio, [("soft", 1, box, 0.0)], []))
+    with pytest.raises(er.ArgumentError, match="is of joint 3"):
+        er.Robot.of(pinocchio.Model(), geometry_of(pinocchio, [far], []))
+    with pytest.raises(er.ArgumentError, match=r"a .*Model with geometry of int is not a robot"):
+        er.Robot.of(model, 5)
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(-1.0, np.inf), (-np.inf, 1.0), (1.0, -1.0), (np.nan, 1.0)])
+def test_limits_of_pinocchio_are_two_or_none(lower: float, upper: float) -> None:
+    pinocchio = pytest.importorskip("pinocchio")
+    model = pinocchio.Model()
+    model.addJoint(0, pinocchio.JointModelRX(), pinocchio.SE3.Identity(), "j", np.ones(1), np.ones(1), np.array([lower]), np.array([upper]))
+    with pytest.raises(er.ArgumentError, match='joint "j" has the limits'):
+        er.Robot.of(model)
+    # By default there are none.
+    free = pinocchio.Model()
+    free.addJoint(0, pinocchio.JointModelRX(), pinocchio.SE3.Identity(), "j")
+    assert np.isinf(er.Robot.of(free).limits).all()
+
+
+def test_a_wrapper_of_pinocchio_has_model_and_solids(mixed: Path) -> None:
+    pinocchio = pytest.importorskip("pinocchio")
+    wrapper = pinocchio.RobotWrapper.BuildFromURDF(str(mixed), [str(mixed.parent)])
+    assert set(er.Robot.of(wrapper).meshes("collision")) == {"floor", "tower", "sledge", "arm", "left", "right"}
+
+
+def test_a_saved_scene_keeps_the_robot_of_another_package(tmp_path: Path) -> None:
+    pinocchio, model = three_joints()
+    coal = pytest.importorskip("coal")
+    scene = er.Scene("bench")
+    scene.add_robot("arm", er.Robot.of(model, geometry_of(pinocchio, [("far", 3, coal.Sphere(0.05), 1.4)], [])))
+    (tmp_path / "there").mkdir()
+    distance = er.Checker(scene.save(tmp_path / "there/bench.toml")).distance
+    del scene
+    shutil.move(tmp_path / "there", tmp_path / "elsewhere")
+    again = er.Cell.load(tmp_path / "elsewhere/bench.toml")
+    assert again.robots == ["arm"] and (er.Checker(again).distance(np.zeros((1, 3))) == distance(np.zeros((1, 3)))).all()
 
 
 def test_what_is_no_robot_teaches() -> None:
@@ -174,6 +258,9 @@ def test_a_cell_knows_where_its_links_are(exchange: Path) -> None:
     assert np.abs(base - base[0]).max() < 1e-12 and np.abs(base[0] - poses["right/base_link"][0]).max() < 1e-12
     assert np.abs(base[0] - np.eye(4)).max() > 0.1
     assert cell.fk(q[:0])["left/tool0"].shape == (0, 4, 4)
+    assert (q[:, cell.columns("right")] == q[:, 6:]).all() and cell.joints_of("right") == robot.joints
+    with pytest.raises(er.ArgumentError, match='no robot is called "centre"'):
+        cell.columns("centre")
     assert set(cell.meshes()) <= set(poses) | set(cell.objects)
     with pytest.raises(er.ArrayError, match=r"\(N, 12\)"):
         cell.fk(q[:, :6])
@@ -220,7 +307,9 @@ def test_what_moves_is_logged_to_rerun(exchange: Path, tmp_path: Path) -> None:
     assert (tmp_path / "run.rrd").stat().st_size > file.stat().st_size
     with pytest.raises(er.ArgumentError, match='no robot is called "centre"'):
         cell.to_rerun({"centre": motion}, stream)
-    with pytest.raises(er.ArgumentError, match="has 1 joints"):
+    with pytest.raises(er.ArgumentError, match='the motion of "left" is a int'):
+        cell.to_rerun({"left": 5}, stream)  # type: ignore[dict-item]
+    with pytest.raises(er.ArgumentError, match="the trajectory is of joint_1"):
         cell.to_rerun({"left": er.Trajectory([0.0], [[0.0]])}, stream)
 
 

@@ -56,5 +56,6 @@ def test_what_is_no_rules_teaches(tmp_path: Path) -> None:
     for wrong in ([1.0, np.nan], "near", 1j, [[1.0], [2.0, 3.0]]):
         with pytest.raises(er.ArrayError):
             er.Rules().correction(wrong, 0.0)
-    with pytest.raises(er.ArgumentError, match="`steps`"):
-        er.Rules().surfaces(1)
+    for steps in (1, -1, 10**6):
+        with pytest.raises(er.ArgumentError, match="`steps`"):
+            er.Rules().surfaces(steps)

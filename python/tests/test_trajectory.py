@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +58,11 @@ def test_values_are_linear_between_the_rows() -> None:
     assert back.times_s.tolist() == [1.0, 3.0, 4.0] and (back.at(2.0) == motion.at(3.0)).all() and back.reversed() == motion
     rows = motion.resampled(0.7)
     assert np.allclose(rows.times_s, [1.0, 1.7, 2.4, 3.1, 3.8, 4.0]) and (rows.q == motion.at(rows.times_s)).all()
+    # Joints have their names, whatever their order.
+    named = er.Trajectory([0, 1], [[1, 2], [3, 4]], JOINTS)
+    assert named.ordered(["b", "a"]).q.tolist() == [[2, 1], [4, 3]] and motion.ordered(JOINTS).joints == JOINTS
+    with pytest.raises(er.ArgumentError, match="the trajectory is of a, b"):
+        named.ordered(["a", "c"])
     assert motion.resampled(1.0).times_s.tolist() == [1.0, 2.0, 3.0, 4.0]
     assert pickle.loads(pickle.dumps(motion)) == motion != back
     with pytest.raises(ValueError, match="read-only"):
@@ -76,6 +82,10 @@ def test_a_path_is_played_in_its_cell(exchange: Path, tmp_path: Path) -> None:
     assert (motion.q == path.q).all() and motion.joints == path.joints
     # As the path itself, but for the title.
     assert abs(len(cell.page({"left": motion})) - len(path.page())) < 2000
+    # In any order of the joints.
+    turned = er.Trajectory(motion.times_s, motion.q[:, ::-1], motion.joints[::-1])
+    ends = [re.search(r"left[^.]*?finished[^.]*?([0-9.]+) s", cell.page({"left": of})) for of in (motion, turned)]
+    assert ends[0] is not None and ends[1] is not None and ends[0][1] == ends[1][1]
     # A cell file takes it.
     (tmp_path / "exchange").mkdir()
     scene = er.Scene()
@@ -93,12 +103,13 @@ def test_a_path_is_played_in_its_cell(exchange: Path, tmp_path: Path) -> None:
         ("t_s,a\n", "motion.csv:1.*has no row"),
         ("t_s,a\n0,1\n1,x\n", "motion.csv:3"),
         ("t_s,a\n0,1\n\n1,nan\n", "motion.csv:4"),
+        ("\ufefft_s,a\n0,1\n0,2\n", r"motion.csv:3: is not later"),
         ("t_s,a\n0,1,2\n", r"motion.csv:2: has 3 values\n  write: 2 finite numbers"),
     ],
 )
 def test_files_that_are_none_are_told_with_their_line(text: str, told: str, tmp_path: Path) -> None:
     file = tmp_path / "motion.csv"
-    file.write_text(text)
+    file.write_text(text, encoding="utf-8")
     with pytest.raises(er.FileError, match=told):
         er.Trajectory.load(file)
 
@@ -116,12 +127,20 @@ def test_what_is_no_trajectory_teaches(exchange: Path) -> None:
             er.Trajectory.time_optimal([[0.0], [1.0]], **limits | wrong)
     with pytest.raises(er.ArrayError, match="`velocity`"):
         er.Trajectory.time_optimal([[0.0], [1.0]], **limits | {"velocity": [1.0, 2.0]})
-    with pytest.raises(er.ArgumentError, match="`period_s`"):
-        er.Trajectory([0, 1], [[0], [1]]).resampled(1e-9)
+    for period in (1e-9, 0.0, -1.0, np.inf, np.nan):
+        with pytest.raises(er.ArgumentError, match="`period_s`"):
+            er.Trajectory([0, 1], [[0], [1]]).resampled(period)
+    for names in (["a,b"], [" a"], ['"q'], [""], ["a\nb"], [1]):
+        with pytest.raises(er.ArgumentError, match="a joint is called"):
+            er.Trajectory([0], [[0]], names)  # type: ignore[arg-type]
+    with pytest.raises(er.ArgumentError, match="two joints have the same name"):
+        er.Trajectory([0], [[0, 0]], ["a", "a"])
+    with pytest.raises(er.FileError, match="cannot be written"):
+        er.Trajectory([0], [[0]]).save("/nowhere/motion.csv")
     cell = er.Cell.load(exchange)
     with pytest.raises(er.ArgumentError, match='no robot is called "centre"'):
         cell.page({"centre": er.Trajectory([0], [[0.0] * 6])})
-    with pytest.raises(er.ArrayError, match="`q` has the shape"):
+    with pytest.raises(er.ArgumentError, match="the trajectory is of joint_1, .*joint_5"):
         cell.page({"left": er.Trajectory([0], [[0.0] * 5])})
     with pytest.raises(er.ArgumentError, match='the motion of "left" is a int'):
         cell.page({"left": 5})  # type: ignore[dict-item]

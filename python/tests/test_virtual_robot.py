@@ -77,7 +77,9 @@ def test_the_work_piece_goes_on_to_the_last_pose_and_stands_without_the_hand(tri
     # The switch is released.
     rest = [trio.step(None) for _ in range(200)]
     assert (rest[-1].part == rest[-2].part).all() and rest[-1].rate == 0.0 and rest[-1].hold is not None
-    stands = trio.go_on(5, speed_override=[0.0, 1.0, 1.0])
+    # It stands until the next pose.
+    assert (trio.go_on(20).part == rest[-1].part).all()
+    stands = trio.go_on(5, speed_override=0.0)
     assert (stands.part == rest[-1].part).all()
     trio.step(there)
     trio.go_on(2000)
@@ -93,6 +95,8 @@ def test_what_cannot_be_done_teaches(trio: er.VirtualRobot) -> None:
         er.VirtualRobot(er.Cell.load(INSPECTION / "cell.toml"), "duo")
     with pytest.raises(er.ArrayError, match="`speed_override`"):
         trio.step(trio.part, speed_override=[1.0])
+    with pytest.raises(er.ArgumentError, match="`speed_override` is 3"):
+        trio.step(trio.part, speed_override=3.0)
     with pytest.raises(er.ArgumentError, match="`speed_override` is 2"):
         trio.step(trio.part, speed_override=[1.0, 2.0, 1.0])
     for steps in (0, -1, 10**7):

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use elbowroom::cell::Cell as Model;
+use elbowroom::cell::{Cell as Model, CellRobot};
 use elbowroom::kinematics::{ChainState, LinkId};
 use elbowroom::sim::RunOptions;
 use elbowroom::spatial::Pose;
@@ -30,6 +30,14 @@ use crate::{joint_map, mesh, page};
 pub struct Cell {
     pub(crate) model: Arc<Model>,
     path: PathBuf,
+}
+
+impl Cell {
+    /// The index of the robot with a name.
+    fn index(&self, robot: &str) -> Result<usize, Fault> {
+        let found = self.model.robots.iter().position(|known| known.name == robot);
+        found.ok_or_else(|| Fault::no_robot(robot, &self.robots()))
+    }
 }
 
 #[pymethods]
@@ -73,6 +81,21 @@ impl Cell {
         robots
             .flat_map(|robot| robot.joint_names().into_iter().map(|joint| format!("{}.{joint}", robot.name)))
             .collect()
+    }
+
+    /// The names of the joints of a robot, as a `Trajectory` of it has them.
+    fn joints_of(&self, robot: &str) -> PyResult<Vec<String>> {
+        Ok(self.model.robots[self.index(robot)?].joint_names())
+    }
+
+    /// The columns that a robot has in a state, as a slice: `q[:, cell.columns("left")]`.
+    fn columns<'py>(&self, py: Python<'py>, robot: &str) -> PyResult<Bound<'py, PySlice>> {
+        let index = self.index(robot)?;
+        let count = |robot: &CellRobot| robot.robot.chain.dof();
+        let begin: usize = self.model.robots[..index].iter().map(count).sum();
+        let ends =
+            [begin, begin + count(&self.model.robots[index])].map(|end| isize::try_from(end).unwrap_or(isize::MAX));
+        Ok(PySlice::new(py, ends[0], ends[1], 1))
     }
 
     /// The state at the start, `(joints,)`, rad or m.

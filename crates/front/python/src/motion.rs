@@ -24,13 +24,14 @@ pub fn motions_of(cell: &Cell, motions: &Bound<'_, PyAny>) -> Result<Vec<(RobotI
             let known: Vec<&str> = cell.robots.iter().map(|robot| robot.name.as_str()).collect();
             Fault::no_robot(&name, &known)
         })?;
-        let (Ok(times_s), Ok(q)) = (trajectory.getattr("times_s"), trajectory.getattr("q")) else {
+        let joints = cell.robots[id].joint_names();
+        let Ok(ordered) = trajectory.getattr("ordered") else {
             let class = trajectory.get_type().name().map(|n| n.to_string()).unwrap_or_default();
             return Err(Fault::Argument(format!("the motion of \"{name}\" is a {class}\n  write: a Trajectory")));
         };
-        let times_s: Vec<f64> = times_s.extract()?;
-        let joints = cell.robots[id].joint_names();
-        let q = Rows::of(&q, "q", &joints)?.all()?;
+        let trajectory = ordered.call1((joints.clone(),))?;
+        let times_s: Vec<f64> = trajectory.getattr("times_s")?.extract()?;
+        let q = Rows::of(&trajectory.getattr("q")?, "q", &joints)?.all()?;
         let rows = times_s.iter().zip(q.chunks_exact(joints.len().max(1)));
         let rows = rows.map(|(t_s, q)| TrajectoryRow { t_s: *t_s, q: q.to_vec() });
         Ok((RobotId(id), JointTrajectory::new(rows.collect())))

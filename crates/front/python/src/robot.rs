@@ -127,15 +127,18 @@ impl Robot {
 
     /// Return the robot of another package.
     ///
-    /// It is written to a folder of temporary files, which exists as long as the robot does; a pickle does not outlast it.
+    /// It is written to a folder of temporary files, which exists as long as the robot does; a pickle does not outlast it. A scene that
+    /// is saved has a copy.
     ///
     /// Parameters
     /// ----------
     /// model
-    ///     A `yourdfpy.URDF`, or a `pinocchio.Model` with joints that turn or slide.
+    ///     A `yourdfpy.URDF`; a `pinocchio.Model` with joints that turn or slide, whose order they keep; or a `pinocchio.RobotWrapper`.
+    ///     Bodies become links, other frames do not; `tip` is the end of the longest chain.
     /// geometry
-    ///     The `pinocchio.GeometryModel` with the solids of a `pinocchio.Model`. Pairs of links none of whose solids it compares are
-    ///     not tested, unless it has no pairs at all.
+    ///     The `pinocchio.GeometryModel` with the solids of a `pinocchio.Model`, which are tested and drawn. Pairs that it does not
+    ///     compare are not tested; without any pair all are tested. Neighbours, with at most one joint between them, are never a pair
+    ///     here, so it is an error if they are compared.
     ///
     /// Raises
     /// ------

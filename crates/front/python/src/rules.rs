@@ -115,7 +115,8 @@ impl Rules {
         py.import("elbowroom.columns")?.getattr("split")?.call1((found, shape))
     }
 
-    /// The size and the direction of corrections over distance and approach speed.
+    /// The size and the direction of corrections over distance and approach speed. Sizes below 0.001, which `correction` takes for 0,
+    /// are as inferred.
     ///
     /// Parameters
     /// ----------
@@ -128,11 +129,10 @@ impl Rules {
     ///     `"size"` and `"direction"` (degrees), each the values of the distance in metres `(steps,)`, those of the speed in m/s
     ///     `(steps,)`, and the surface `(steps, steps)` with a row per speed.
     #[pyo3(signature = (steps=41))]
-    fn surfaces<'py>(&self, py: Python<'py>, steps: usize) -> PyResult<Bound<'py, PyAny>> {
-        if !(2..=2000).contains(&steps) {
-            return Err(Fault::Argument(format!("`steps` is {steps}\n  write: 2 to 2000")).into());
-        }
-        let surfaces = py.detach(|| self.model.surfaces(steps));
+    fn surfaces<'py>(&self, py: Python<'py>, steps: i64) -> PyResult<Bound<'py, PyAny>> {
+        let count = usize::try_from(steps).ok().filter(|count| (2..=2000).contains(count));
+        let count = count.ok_or_else(|| Fault::Argument(format!("`steps` is {steps}\n  write: 2 to 2000")))?;
+        let surfaces = py.detach(|| self.model.surfaces(count));
         let named = PyDict::new(py);
         for surface in surfaces {
             let (x, y) = (PyArray1::from_vec(py, surface.x.clone()), PyArray1::from_vec(py, surface.y.clone()));

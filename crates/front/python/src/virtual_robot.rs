@@ -153,6 +153,9 @@ impl VirtualRobot {
     fn overrides(&self, given: Option<&Bound<'_, PyAny>>) -> Result<Vec<f64>, Fault> {
         let names = self.robots();
         let Some(given) = given else { return Ok(vec![1.0; names.len()]) };
+        if let Ok(all) = given.extract::<f64>() {
+            return Ok(vec![share(all)?; names.len()]);
+        }
         vector(given, "speed_override", &names)?.into_iter().map(share).collect()
     }
 }
@@ -267,7 +270,7 @@ impl VirtualRobot {
         Ok(self.member(self.read(py, |arms| arms.holder())?))
     }
 
-    /// How long the work-piece still goes on to the last desired pose at full speed, seconds.
+    /// The part of the desired path that is still before the work-piece, seconds at full speed; speeding up and braking add to it.
     #[getter]
     fn left_s(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.read(py, |arms| arms.on_path().1)?)
@@ -280,9 +283,9 @@ impl VirtualRobot {
     /// pose
     ///     The desired pose of the work-piece in the world: a 4x4 array, `(xyz, quaternion xyzw)`, or `(xyz, rotation)`. The
     ///     work-piece goes there straight from the one before, at the speed at which they come or more slowly. `None`: the enabling
-    ///     switch is not pressed, and it stands.
+    ///     switch is not pressed, and it stands until the next pose; arms that wait still keep out of the way.
     /// speed_override
-    ///     The overrides of the monitors, one per robot of `robots`, 0 to 1; default: 1.
+    ///     The overrides of the monitors, 0 to 1: one per robot of `robots`, or one for all; default: 1.
     ///
     /// Returns
     /// -------
@@ -331,12 +334,12 @@ impl VirtualRobot {
         self.steps(py, &inputs, &allowed, progress)
     }
 
-    /// Make steps without a new pose: the work-piece goes on to the last one that was desired.
+    /// Make steps without a new pose: the work-piece goes on to the last one that was desired; after `step(None)` it stands.
     ///
     /// Parameters
     /// ----------
     /// steps
-    ///     How many; `left_s` says after which time it arrives if nothing is in the way.
+    ///     How many.
     /// speed_override
     ///     As for `step`.
     /// progress
