@@ -77,7 +77,7 @@ cargo xtask COMMAND
         the same for one of stl obj dae gltf ply off 3ds wrl urdf srdf scene yaml mesh, with the files of DIR too
   fuzz cell-file FILE SECONDS [SEED]
         the same for a cell file, which is also run for a few ticks
-  fuzz cells [--count N] [--kind stop|exchange|faults|moving|tools|recordings|all] [--seed S] [--case I] [--no-shrink] [--json]
+  fuzz cells [--count N] [--kind stop|exchange|faults|moving|tools|recordings|all] [--seed S] [--case I] [--no-shrink] [--keys] [--json]
         runs N random cells (default 1000) of each kind under the monitor, and checks the recordings by kinematics and
         distances of its own, between ticks too: nobody enters, never two in an exchange region, no silent deadlock.
         Failing cells are made smaller and written to target/fuzz-cells

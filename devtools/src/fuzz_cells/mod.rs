@@ -1,6 +1,7 @@
 //! `cargo xtask fuzz cells`: runs random cells in simulated time, and checks them by an oracle that knows only the recording.
 
 mod checked_run;
+mod coverage;
 pub mod generate;
 mod oracle;
 mod random;
@@ -15,6 +16,7 @@ use std::time::{Duration, Instant};
 
 use elbowroom_cell::Cell;
 
+use coverage::{CellKeys, Coverage};
 use generate::{Kind, Places};
 use oracle::Finding;
 use spec::CellSpec;
@@ -44,6 +46,8 @@ pub struct Options {
     case: Option<u64>,
     replay: Option<PathBuf>,
     shrinks: bool,
+    /// Whether to print which keys the cells have.
+    keys: bool,
 }
 
 impl Default for Options {
@@ -56,6 +60,7 @@ impl Default for Options {
             case: None,
             replay: None,
             shrinks: true,
+            keys: false,
         }
     }
 }
@@ -74,6 +79,7 @@ impl Options {
                 "--kind" => options.kinds = kinds(value()?)?,
                 "--replay" => options.replay = Some(PathBuf::from(value()?)),
                 "--json" => options.json = true,
+                "--keys" => options.keys = true,
                 "--no-shrink" => options.shrinks = false,
                 other => return Err(format!("`fuzz cells` does not know `{other}`")),
             }
@@ -108,6 +114,16 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
         println!("{}", summary::json(options.seed, &summaries));
     } else {
         summary::print(&summaries);
+    }
+    let mut coverage = Coverage::default();
+    for summary in &summaries {
+        coverage.merge(&summary.coverage);
+    }
+    if options.keys {
+        coverage.print();
+    }
+    if options.count.is_none() {
+        coverage.check().map_err(Failure::Check)?;
     }
     let failed: usize = summaries.iter().map(Summary::failed).sum();
     if failed == 0 { Ok(()) } else { Err(Failure::Check(format!("{failed} cells failed: {}", cells.display()))) }
@@ -162,7 +178,12 @@ fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
             let work = move || {
                 loop {
                     let case = next.fetch_add(1, Ordering::Relaxed);
-                    if case >= end || send.send((case, checked_run::run_spec(&spec(case), places))).is_err() {
+                    if case >= end {
+                        return;
+                    }
+                    let spec = spec(case);
+                    let run = checked_run::run_spec(&spec, places).map(|run| (run, CellKeys::of(&spec.to_toml())));
+                    if send.send((case, run)).is_err() {
                         return;
                     }
                 }
@@ -175,11 +196,12 @@ fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
         let mut printed = Instant::now();
         for (case, result) in results {
             match result {
-                Ok(run) => {
+                Ok((run, keys)) => {
                     if let Some(finding) = run.findings.list.first() {
                         report(finding, &spec(case), (kind, case), options, places, &mut summary);
                     }
                     summary.add(&run);
+                    summary.coverage.add(&keys);
                 }
                 Err(e) => summary.refuse(&e),
             }

@@ -8,6 +8,7 @@ use std::time::Duration;
 use elbowroom_cell::Cell;
 
 use super::checked_run::CheckedRun;
+use super::coverage::Coverage;
 use super::oracle::Finding;
 
 /// Counts of one kind of cells.
@@ -28,6 +29,8 @@ pub struct Summary {
     simulated_s: f64,
     failing: FailingCells,
     pub took: Duration,
+    /// The keys that the cells have.
+    pub coverage: Coverage,
     /// Failing cells as files, each with its findings.
     pub files: Vec<(PathBuf, String)>,
 }

@@ -4,6 +4,7 @@ mod carried;
 mod cooperating;
 mod encounter;
 mod exchange;
+mod extras;
 mod faults;
 mod grids;
 mod guided;
@@ -98,6 +99,7 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
     if has_grids && let Ok(cell) = spec.parse(places.cells) {
         grids::some(&mut spec, &cell, random);
     }
+    extras::add(&mut spec, random);
     spec
 }
 

@@ -34,6 +34,9 @@ pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     for i in 0..spec.regions.len() {
         list.push(|c| remove_region(c, i));
     }
+    for i in 0..spec.extras.len() {
+        list.push(|c| drop(c.extras.remove(i)));
+    }
     for i in 0..spec.grids.len() {
         list.push(|c| drop(c.grids.remove(i)));
     }

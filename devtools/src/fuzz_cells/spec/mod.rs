@@ -43,6 +43,15 @@ pub struct CellSpec {
     pub repeat: u32,
     /// Guidance of the first robot.
     pub guidance: Option<GuidanceSpec>,
+    /// Further keys of tables.
+    pub extras: Vec<ExtraKey>,
+}
+
+/// A line of a table, such as `hysteresis = 0.01` of `region.g0`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExtraKey {
+    pub table: String,
+    pub line: String,
 }
 
 impl CellSpec {
@@ -70,6 +79,11 @@ impl CellSpec {
         self.guidance.iter().for_each(|guidance| guidance.write(&mut t));
         comments::write_repeat(&mut t, self.repeat);
         self.faults.iter().for_each(|f| comments::write_fault(&mut t, f));
+        for ExtraKey { table, line } in &self.extras {
+            // A table that is not there any more has no keys.
+            let head = format!("[{table}]\n");
+            t = t.replacen(&head, &format!("{head}{line}\n"), 1);
+        }
         t
     }
 

@@ -1,0 +1,91 @@
+//! Keys that any table of its kind may have, whatever else the cell tests: a law, a force or a path must keep its promises with them.
+
+use crate::fuzz_cells::random::Random;
+use crate::fuzz_cells::spec::{CellSpec, ExtraKey};
+
+/// Adds keys to some of the tables.
+pub fn add(spec: &mut CellSpec, random: &mut Random) {
+    let (text, has_faults) = (spec.to_toml(), !spec.faults.is_empty());
+    for table in text.lines().filter_map(|line| line.strip_prefix('[')?.strip_suffix(']')) {
+        let (parts, own) = (table.split('.').collect::<Vec<&str>>(), keys_of(&text, table));
+        for line in lines(&parts, own, has_faults, random) {
+            let key = line.split_inclusive(" =").next().unwrap_or_default();
+            if !own.lines().any(|line| line.starts_with(key)) {
+                spec.extras.push(ExtraKey { table: table.to_owned(), line });
+            }
+        }
+    }
+}
+
+/// The lines of a table.
+fn keys_of<'t>(text: &'t str, table: &str) -> &'t str {
+    let (_, after) = text.split_once(&format!("[{table}]\n")).unwrap_or_default();
+    after.split("\n[").next().unwrap_or_default()
+}
+
+fn lines(table: &[&str], own: &str, has_faults: bool, random: &mut Random) -> Vec<String> {
+    let mut lines = Vec::new();
+    match table {
+        ["monitor"] => {
+            some(&mut lines, 12, random, |r| format!("override_rate = {}", r.scaled(0.5, 20.0)));
+            // Faults have ages, which are judged with the age of the default.
+            if !has_faults {
+                some(&mut lines, 12, random, |r| format!("stale_ms = {}", r.whole(20, 100)));
+            }
+        }
+        ["region" | "fence", _] => {
+            some(&mut lines, 20, random, |r| format!("hysteresis = {}", r.scaled(1e-4, 0.1)));
+            if table[0] == "fence" {
+                some(&mut lines, 30, random, |r| format!("thickness = {}", r.scaled(0.01, 0.3)));
+            }
+        }
+        ["encoder", _] => {
+            some(&mut lines, 25, random, |r| format!("at = {}", r.between(-0.5, 0.5)));
+            some(&mut lines, 25, random, |r| format!("end = {}", r.between(3.0, 8.0)));
+        }
+        ["robot", _] => {
+            some(&mut lines, 20, random, |r| format!("jerk = {}", r.scaled(5.0, 500.0)));
+        }
+        ["avoidance", _] => avoidance(&mut lines, random),
+        ["force", _] => force(&mut lines, own, random),
+        ["virtual_robot", _] => {
+            some(&mut lines, 30, random, |r| format!("stale_ms = {}", r.whole(200, 1000)));
+        }
+        ["fixture", _] => some(&mut lines, 30, random, |_| "active = true".to_owned()),
+        _ => {}
+    }
+    lines
+}
+
+fn force(lines: &mut Vec<String>, own: &str, random: &mut Random) {
+    let is = |law: &str| own.contains(&format!("law = \"{law}\""));
+    if is("admittance") || is("impedance") {
+        some(lines, 50, random, |r| format!("largest_force = {}", r.scaled(20.0, 300.0)));
+    }
+    if is("admittance") {
+        some(lines, 50, random, |r| format!("jerk = {}", r.scaled(50.0, 1000.0)));
+    }
+    if is("impedance") {
+        some(lines, 50, random, |r| format!("tank = {}", r.scaled(0.001, 0.05)));
+        some(lines, 30, random, |r| format!("device_damping = {}", r.scaled(5.0, 50.0)));
+    }
+}
+
+fn avoidance(lines: &mut Vec<String>, random: &mut Random) {
+    some(lines, 30, random, |_| "robots = []".to_owned());
+    some(lines, 30, random, |r| format!("speed = {}", r.scaled(0.1, 3.0)));
+    some(lines, 30, random, |r| format!("clearance = {}", r.scaled(0.005, 0.2)));
+    some(lines, 30, random, |r| format!("return_speed = {}", r.whole(5, 100)));
+    some(lines, 30, random, |r| format!("stall_timeout = {}", r.scaled(0.1, 5.0)));
+    some(lines, 30, random, |r| format!("horizon = {}", r.between(0.0, 5.0)));
+    some(lines, 20, random, |r| format!("noise = {}", r.scaled(0.001, 0.02)));
+    some(lines, 20, random, |r| format!("delay_ms = {}", r.whole(0, 200)));
+    some(lines, 30, random, |r| format!("plan_ms = {}", r.whole(0, 500)));
+}
+
+/// Adds a line in this percentage of cases.
+fn some(lines: &mut Vec<String>, percent: u32, random: &mut Random, line: impl Fn(&mut Random) -> String) {
+    if random.percent(percent) {
+        lines.push(line(random));
+    }
+}
