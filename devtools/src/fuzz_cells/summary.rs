@@ -51,6 +51,7 @@ struct FailingCells {
     off_entry: usize,
     misread: usize,
     slowed_mechanisms: usize,
+    zones_and_outputs: usize,
     any: usize,
 }
 
@@ -79,6 +80,7 @@ impl FailingCells {
         self.off_entry += has(|f| matches!(f, Finding::OffEntry { .. }));
         self.misread += has(|f| matches!(f, Finding::MisreadLimits { .. }));
         self.slowed_mechanisms += has(|f| matches!(f, Finding::Slowed { .. }));
+        self.zones_and_outputs += has(|f| matches!(f, Finding::TooFastInZone { .. } | Finding::OutputOff { .. }));
         self.any += usize::from(!findings.is_empty());
     }
 }
@@ -115,7 +117,7 @@ impl Summary {
 
     pub fn progress(&self) -> String {
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell, {} off their entry, {} with misread limits, {} with slowed mechanisms",
+            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell, {} off their entry, {} with misread limits, {} with slowed mechanisms, {} too fast in a zone or with an output off",
             self.kind,
             self.cells,
             self.refused.values().sum::<usize>(),
@@ -131,11 +133,12 @@ impl Summary {
             self.failing.wrong_cells,
             self.failing.off_entry,
             self.failing.misread,
-            self.failing.slowed_mechanisms
+            self.failing.slowed_mechanisms,
+            self.failing.zones_and_outputs
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 23] {
+    fn rows(&self) -> [(&'static str, String); 24] {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         [
             ("cells", self.cells.to_string()),
@@ -159,6 +162,7 @@ impl Summary {
             ("off their entry", self.failing.off_entry.to_string()),
             ("misread limits", self.failing.misread.to_string()),
             ("slowed mechanisms", self.failing.slowed_mechanisms.to_string()),
+            ("zones and outputs", self.failing.zones_and_outputs.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ]
@@ -273,13 +277,23 @@ pub fn in_words(finding: &Finding, cell: &Cell) -> String {
     }
 }
 
-/// Formats a finding on the joints of one robot, or on its grid, as a sentence.
+/// Formats a finding on the joints of one robot, on its grid, or on what it is told, as a sentence.
 fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
     let robot = |r: &usize| cell.robots[*r].name.as_str();
     match finding {
         Finding::WrongCell { robot: r, t_s, number } => {
             format!("robot {} was not in cell {number} of its grid at {t_s:.4} s", robot(r))
         }
+        Finding::TooFastInZone { robot: r, region, t_s, speed_override, most } => format!(
+            "robot {} had the override {speed_override:.4} in speed zone {} at {t_s:.4} s, the zone {most:.4}",
+            robot(r),
+            cell.regions[*region].region.name
+        ),
+        Finding::OutputOff { robot: r, region, t_s, output } => format!(
+            "output {output} was off at {t_s:.4} s while robot {} was in region {} or its warning zone",
+            robot(r),
+            cell.regions[*region].region.name
+        ),
         Finding::Slowed { robot: r, t_s } => format!("mechanism {} was slowed down at {t_s:.4} s", robot(r)),
         Finding::MisreadLimits { robot: r, joint, t_s, stopped } => format!(
             "robot {}: a reading of joint {joint} {} at {t_s:.4} s",

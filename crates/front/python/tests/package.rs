@@ -80,7 +80,7 @@ fn the_examples_of_the_documentation_print_what_they_say() {
          classes = [shown for shown in vars(elbowroom).values() if isinstance(shown, type) and '>>>' in (shown.__doc__ or '')]\n\
          for shown in (elbowroom, *classes, poses.matrix, poses.row):\n    \
              runner.run(parse(shown.__doc__, {'elbowroom': elbowroom, 'np': numpy, **vars(poses)}, shown.__name__, None, 0))\n\
-         assert len(classes) == 8 and runner.tries > 30 and runner.failures == 0, (runner.tries, runner.failures)\n",
+         assert len(classes) == 11 and runner.tries > 30 and runner.failures == 0, (runner.tries, runner.failures)\n",
     )
     .expect("a script");
     package.run(&["doctests"]);

@@ -1,11 +1,15 @@
 //! Keys that any table of its kind may have, whatever else the cell tests: a law, a force or a path must keep its promises with them.
 
 use crate::fuzz_cells::random::Random;
-use crate::fuzz_cells::spec::{CellSpec, ExtraKey};
+use crate::fuzz_cells::spec::{CellSpec, ExtraKey, RegionSpec};
 
 /// Adds keys to some of the tables.
 pub fn add(spec: &mut CellSpec, random: &mut Random) {
-    let (text, has_faults) = (spec.to_toml(), !spec.faults.is_empty());
+    let has_faults = !spec.faults.is_empty();
+    if !has_faults {
+        speed_zones(spec, random);
+    }
+    let text = spec.to_toml();
     for table in text.lines().filter_map(|line| line.strip_prefix('[')?.strip_suffix(']')) {
         let (parts, own) = (table.split('.').collect::<Vec<&str>>(), keys_of(&text, table));
         for line in lines(&parts, own, has_faults, random) {
@@ -13,6 +17,20 @@ pub fn add(spec: &mut CellSpec, random: &mut Random) {
             if !own.lines().any(|line| line.starts_with(key)) {
                 spec.extras.push(ExtraKey { table: table.to_owned(), line });
             }
+        }
+    }
+}
+
+/// Makes speed zones of some forbidden regions.
+fn speed_zones(spec: &mut CellSpec, random: &mut Random) {
+    let is_plain = |region: &&mut RegionSpec| {
+        region.kind == "forbidden" && !region.temporary && !region.is_fence && !region.shape.contains("keep =")
+    };
+    for region in spec.regions.iter_mut().filter(is_plain) {
+        if random.percent(8) {
+            region.kind = "monitored";
+            let line = format!("slow_to = {}", random.whole(5, 80));
+            spec.extras.push(ExtraKey { table: format!("region.{}", region.name), line });
         }
     }
 }
@@ -35,6 +53,11 @@ fn lines(table: &[&str], own: &str, has_faults: bool, random: &mut Random) -> Ve
         }
         ["region" | "fence", _] => {
             some(&mut lines, 20, random, |r| format!("hysteresis = {}", r.scaled(1e-4, 0.1)));
+            if !has_faults {
+                // Grids have those from 20 on.
+                some(&mut lines, 15, random, |r| format!("output = {}", r.whole(0, 9)));
+                some(&mut lines, 15, random, |r| format!("warning_output = {}", r.whole(10, 19)));
+            }
             if table[0] == "fence" {
                 some(&mut lines, 30, random, |r| format!("thickness = {}", r.scaled(0.01, 0.3)));
             }

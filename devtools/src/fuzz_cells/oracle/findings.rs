@@ -34,6 +34,10 @@ pub enum Finding {
     WrongCell { robot: usize, t_s: f64, number: u64 },
     /// A reading beyond the limits of a joint did not stop its robot, or (`stopped`) one within them did.
     MisreadLimits { robot: usize, joint: usize, t_s: f64, stopped: bool },
+    /// A robot in a speed zone had an override above that of the zone.
+    TooFastInZone { robot: usize, region: usize, t_s: f64, speed_override: f64, most: f64 },
+    /// An output was off while a robot was in the region, or in the warning zone, that switches it on.
+    OutputOff { robot: usize, region: usize, t_s: f64, output: u8 },
     /// A mechanism was slowed down, or a region concerns it.
     Slowed { robot: usize, t_s: f64 },
     /// A joint was faster than it can, by this share of its speed.

@@ -33,6 +33,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod track;
+mod while_inside;
 
 pub use arm::Arm;
 pub use findings::{Finding, Findings};
@@ -68,6 +69,7 @@ pub fn check(
     kept_axes::check(cell, recording, &arms, &mut findings);
     grids::check(cell, recording, &arms, &mut findings);
     mechanisms::check(cell, recording, &mut findings);
+    while_inside::check(&motion, &guarded, &mut findings);
     Ok(findings)
 }
 

@@ -4,7 +4,7 @@ use elbowroom_cell::Cell;
 use elbowroom_robot::RobotId;
 use elbowroom_sim::{InputFault, InputFaultKind, Recording, RunOptions, simulate};
 
-use super::{Finding, Findings, mechanisms, readings};
+use super::{Arm, Finding, Findings, Guarded, mechanisms, motion::OracleMotion, readings, while_inside};
 
 const CELL: &str = r#"
 version = 1
@@ -69,4 +69,50 @@ fn a_mechanism_that_is_slowed_down_is_found() {
     recording.robots[1].samples[7].speed_override = 1.0;
     recording.robots[0].samples[7].speed_override = 0.1;
     assert_eq!(found(&recording), []);
+}
+
+/// A ball that goes through a speed zone, with outputs.
+const ZONE: &str = r#"
+version = 1
+units = { length = "m", angle = "rad" }
+[robot.a]
+dh = [{ kind = "prismatic", min = -1, max = 2, speed = 1 }]
+links = [{ sphere = { radius = 0.02 } }]
+[region.zone]
+shape = "box"
+base = [0, 0, 1]
+size = [0.4, 0.4, 0.4]
+kind = "monitored"
+slow_to = 30
+warning = 0.1
+output = 3
+warning_output = 7
+[program.a]
+steps = [{ move = "joint", to = [2] }]
+"#;
+
+#[test]
+fn a_speed_zone_that_does_not_slow_and_an_output_that_is_off_are_found() {
+    let cell = Cell::parse("test.toml", ZONE).unwrap();
+    let found = |recording: &Recording| {
+        let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
+        let guarded: Vec<Vec<Guarded>> = cell.robots.iter().map(Guarded::all).collect();
+        let mut findings = Findings::default();
+        while_inside::check(&OracleMotion::new(&cell, recording, &arms).unwrap(), &guarded, &mut findings);
+        findings.list
+    };
+    let right = simulate(&cell, &RunOptions::default()).unwrap().recording;
+    assert_eq!(found(&right), []);
+    let fast = simulate(&cell, &RunOptions { apply_override: false, ..RunOptions::default() }).unwrap().recording;
+    assert!(matches!(found(&fast)[..], [Finding::TooFastInZone { robot: 0, region: 0, most: 0.3, .. }]));
+    for output in [3, 7] {
+        let mut dark = right.clone();
+        dark.robots[0].samples.iter_mut().for_each(|sample| sample.outputs &= !(1 << output));
+        assert!(matches!(found(&dark)[..], [Finding::OutputOff { output: o, .. }] if o == output));
+    }
+    // One tick is enough.
+    let mut late = right.clone();
+    let middle = late.robots[0].samples.iter().position(|sample| sample.q[0] > 1.0).unwrap();
+    late.robots[0].samples[middle].speed_override = 0.4;
+    assert_eq!(found(&late).len(), 1);
 }
