@@ -9,6 +9,7 @@ import os
 import sys
 
 import attempts
+import package_states
 import vamp_words
 import workload
 
@@ -63,6 +64,8 @@ def main():
                 continue
             for line in map(json.loads, answers):
                 show(line, call.json)
+        if package_states.is_there():
+            show(json.loads(package_states.ask(document, call)), call.json)
     print("\n".join(missing), file=sys.stderr if call.json else sys.stdout)
 
 
