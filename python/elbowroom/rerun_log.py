@@ -25,8 +25,10 @@ _TIMELINE = "time_s"
 def log_cell(cell: Cell, motions: Mapping[str, Trajectory] | None = None, stream: Any = None) -> None:
     """Log a cell; robots with a trajectory move, the others stay at their start."""
     rerun = imported("rerun")
+    given: Mapping[str, Any] = {} if motions is None else motions
+    if not isinstance(given, Mapping):
+        raise ArgumentError(f'`motions` is a {type(given).__name__}\n  write: {{"robot": trajectory}}')
     _log_meshes(rerun, cell, stream)
-    given = {} if motions is None else dict(motions)
     wrong = [name for name, motion in given.items() if not isinstance(motion, Trajectory)]
     if wrong:
         raise ArgumentError(f'the motion of "{wrong[0]}" is a {type(given[wrong[0]]).__name__}\n  write: a Trajectory')

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import elbowroom as er
+from conftest import ROOT
 
 JOINTS = ["a", "b"]
 
@@ -89,7 +90,7 @@ def test_a_path_is_played_in_its_cell(exchange: Path, tmp_path: Path) -> None:
     # A cell file takes it.
     (tmp_path / "exchange").mkdir()
     scene = er.Scene()
-    scene.add_robot("arm", "examples/models/rx60b/rx60b.urdf")
+    scene.add_robot("arm", ROOT / "examples/models/rx60b/rx60b.urdf")
     scene.add("program", "arm", trajectory=motion.save(tmp_path / "motion.csv"))
     trace = scene.cell().run(monitor=False).trace()
     assert np.abs(trace.trajectory.at(motion.times_s) - motion.q).max() < 1e-6
