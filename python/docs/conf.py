@@ -22,5 +22,5 @@ html_theme = "alabaster"
 html_theme_options = {"description": "Collision awareness for industrial robot cells", "page_width": "1100px"}
 html_sidebars = {"**": ["about.html", "navigation.html", "searchfield.html"]}
 html_show_sourcelink = False
-# Names of attributes such as `robot` occur in several classes, and are no references.
+# Names of attributes such as `robot` occur in several classes: they are not references.
 suppress_warnings = ["ref.python"]

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elbowroom.errors import ArgumentError
+from elbowroom.files import obj
 from elbowroom.optional import imported
 
 __all__ = ["write_pinocchio"]
@@ -182,22 +183,18 @@ def _solid(element: Element, solid: Any, file: Path) -> None:
         length = repr(2.0 * float(shape.halfLength))
         SubElement(element, kind.lower(), radius=repr(float(shape.radius)), length=length)
     elif hasattr(shape, "vertices") and hasattr(shape, "tri_indices"):
-        corners = [[t[0], t[1], t[2]] for t in (shape.tri_indices(k) for k in range(shape.num_tris))]
-        _write_obj(np.asarray(shape.vertices()), corners, file)
-        SubElement(element, "mesh", filename=file.name)
+        _mesh(element, shape.vertices(), [shape.tri_indices(k) for k in range(shape.num_tris)], file)
     elif hasattr(shape, "points") and hasattr(shape, "polygons"):
-        corners = [[t[0], t[1], t[2]] for t in (shape.polygons(k) for k in range(shape.num_polygons))]
-        _write_obj(np.asarray(shape.points()), corners, file)
-        SubElement(element, "mesh", filename=file.name)
+        _mesh(element, shape.points(), [shape.polygons(k) for k in range(shape.num_polygons)], file)
     else:
         hint = "boxes, spheres, cylinders, capsules and meshes"
         raise ArgumentError(f'the solid "{solid.name}" is a {kind}\n  write: {hint}')
 
 
-def _write_obj(vertices: npt.NDArray[np.float64], corners: list[list[int]], file: Path) -> None:
-    lines = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices.tolist()]
-    lines += [f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in corners]
-    file.write_text("".join(lines), encoding="ascii")
+def _mesh(element: Element, vertices: Any, triangles: list[Any], file: Path) -> None:
+    faces = np.array([[t[0], t[1], t[2]] for t in triangles], dtype=np.int64).reshape(-1, 3)
+    file.write_bytes(obj(np.asarray(vertices), faces))
+    SubElement(element, "mesh", filename=file.name)
 
 
 def _write_srdf(model: Any, geometry: Any, links: _Links, file: Path, name: str) -> None:
@@ -212,7 +209,7 @@ def _write_srdf(model: Any, geometry: Any, links: _Links, file: Path, name: str)
         if frozenset((a, b)) in compared and _are_neighbours(model, solids[a].parentJoint, solids[b].parentJoint):
             pair = f'"{solids[a].name}" and "{solids[b].name}"'
             hint = "geometry.removeCollisionPair(…) for neighbours; what stands around the robot in a Scene"
-            raise ArgumentError(f"{pair} are compared, but at most one joint is between them, so they are no pair here\n  write: {hint}")
+            raise ArgumentError(f"{pair} are compared, but at most one joint is between them, so they are not a pair here\n  write: {hint}")
     root = Element("robot", name=name)
     for (one, other), answers in by_links.items():
         if answers == {True, False} and one != other:

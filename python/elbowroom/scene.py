@@ -19,7 +19,7 @@ import numpy.typing as npt
 from elbowroom import poses
 from elbowroom._elbowroom import Cell, Robot
 from elbowroom.errors import ArgumentError, ArrayError, FileError
-from elbowroom.files import unwritable
+from elbowroom.files import obj, unwritable
 from elbowroom.interop import temporary_folder
 from elbowroom.pickles import files_of_robot
 from elbowroom.poses import PoseLike
@@ -180,6 +180,7 @@ class Scene:
 
     def remove(self, name: str) -> None:
         """Remove what has this name: an object or a robot, otherwise another table."""
+        self._robots.pop(name, None)
         for table in ("object", "robot", *self._tables):
             if self._tables.get(table, {}).pop(name, None) is not None:
                 return
@@ -285,10 +286,8 @@ class _Mesh:
             raise ArrayError("`vertices` has values that are not finite\n  write: finite numbers, metres")
         if corners.size and not (0 <= corners.min() and corners.max() < len(points)):
             raise ArrayError(f"`faces` has indices from {corners.min()} to {corners.max()}\n  write: 0 to {len(points) - 1}")
-        lines = [f"v {x!r} {y!r} {z!r}\n" for x, y, z in points.tolist()]
-        lines += [f"f {a} {b} {c}\n" for a, b, c in (corners + 1).tolist()]
-        #: An OBJ file, whose numbers read back to the same bits.
-        self.obj = "".join(lines).encode("ascii")
+        #: An OBJ file.
+        self.obj = obj(points, corners)
 
 
 def _array(name: str, values: npt.ArrayLike, kind: type) -> npt.NDArray[Any]:

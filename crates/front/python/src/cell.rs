@@ -6,14 +6,15 @@ use std::sync::Arc;
 use elbowroom::cell::{Cell as Model, CellRobot};
 use elbowroom::kinematics::{ChainState, LinkId};
 use elbowroom::sim::RunOptions;
-use elbowroom::spatial::Pose;
-use numpy::{PyArray1, PyArray2};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySlice};
 
 use crate::arrays::Rows;
 use crate::error::Fault;
+use crate::matrix::{matrix, values};
 use crate::motion::motions_of;
+use crate::places::robot_named;
 use crate::rows::{map_rows, shaped};
 use crate::run::run;
 use crate::{joint_map, mesh, page};
@@ -30,14 +31,6 @@ use crate::{joint_map, mesh, page};
 pub struct Cell {
     pub(crate) model: Arc<Model>,
     path: PathBuf,
-}
-
-impl Cell {
-    /// The index of the robot with a name.
-    fn index(&self, robot: &str) -> Result<usize, Fault> {
-        let found = self.model.robots.iter().position(|known| known.name == robot);
-        found.ok_or_else(|| Fault::no_robot(robot, &self.robots()))
-    }
 }
 
 #[pymethods]
@@ -77,20 +70,17 @@ impl Cell {
     /// The names of the joints of all robots, `robot.joint`, in the order of the columns of states.
     #[getter]
     fn joints(&self) -> Vec<String> {
-        let robots = self.model.robots.iter();
-        robots
-            .flat_map(|robot| robot.joint_names().into_iter().map(|joint| format!("{}.{joint}", robot.name)))
-            .collect()
+        joints_of(&self.model.robots)
     }
 
     /// The names of the joints of a robot, as a `Trajectory` of it has them.
     fn joints_of(&self, robot: &str) -> PyResult<Vec<String>> {
-        Ok(self.model.robots[self.index(robot)?].joint_names())
+        Ok(self.model.robots[robot_named(&self.model, robot)?.0].joint_names())
     }
 
     /// The columns that a robot has in a state, as a slice: `q[:, cell.columns("left")]`.
     fn columns<'py>(&self, py: Python<'py>, robot: &str) -> PyResult<Bound<'py, PySlice>> {
-        let index = self.index(robot)?;
+        let index = robot_named(&self.model, robot)?.0;
         let count = |robot: &CellRobot| robot.robot.chain.dof();
         let begin: usize = self.model.robots[..index].iter().map(count).sum();
         let ends =
@@ -189,7 +179,7 @@ impl Cell {
         let robots = &self.model.robots;
         let links: usize = robots.iter().map(|robot| robot.robot.chain.links().len()).sum();
         let worker = || robots.iter().map(|robot| ChainState::new(&robot.robot.chain)).collect::<Vec<_>>();
-        let values = map_rows(py, &rows, 16 * links, worker, |states, q, out| {
+        let all = map_rows(py, &rows, 16 * links, worker, |states, q, out| {
             let (mut joints, mut poses) = (q, out.chunks_exact_mut(16));
             for (robot, state) in robots.iter().zip(states) {
                 let (own, others) = joints.split_at(state.q.len());
@@ -198,12 +188,11 @@ impl Cell {
                 robot.robot.chain.forward(state);
                 for (link, out) in (0..robot.robot.chain.links().len()).zip(&mut poses) {
                     let pose = robot.base_in_world * state.link_in_root(LinkId(link));
-                    out[..12].copy_from_slice(pose.to_rows().as_flattened());
-                    out[12..].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
+                    out.copy_from_slice(&values(&pose));
                 }
             }
         })?;
-        let poses = shaped(&values, [rows.len(), links, 4, 4])?;
+        let poses = shaped(&all, [rows.len(), links, 4, 4])?;
         let names = robots
             .iter()
             .flat_map(|robot| robot.robot.chain.links().iter().map(move |link| format!("{}/{link}", robot.name)));
@@ -280,8 +269,11 @@ impl Cell {
     }
 }
 
-/// A pose as a 4x4 array.
-pub fn matrix<'py>(py: Python<'py>, pose: &Pose) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let rows = pose.to_rows();
-    shaped(&PyArray1::from_vec(py, [rows.as_flattened(), &[0.0, 0.0, 0.0, 1.0]].concat()), [4, 4])
+/// The names of the joints of robots that stand side by side in a state: `robot.joint`.
+pub fn joints_of<'c>(robots: impl IntoIterator<Item = &'c CellRobot>) -> Vec<String> {
+    let of = |robot: &CellRobot| {
+        let name = robot.name.clone();
+        robot.joint_names().into_iter().map(move |joint| format!("{name}.{joint}"))
+    };
+    robots.into_iter().flat_map(of).collect()
 }

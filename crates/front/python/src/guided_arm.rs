@@ -9,12 +9,12 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use self_cell::self_cell;
 
-use crate::cell::{Cell, matrix};
+use crate::cell::Cell;
 use crate::error::Fault;
-use crate::progress::Progress;
+use crate::matrix::{matrix, values};
 use crate::robot::pose_of;
 use crate::rows::shaped;
-use crate::session::{BETWEEN_SIGNALS, Surroundings, broken, named, poses_of_rows, share};
+use crate::session::{Surroundings, broken, in_parts, named, poses_of_rows, share};
 
 self_cell!(
     /// An arm beside the scene that it borrows.
@@ -108,8 +108,7 @@ struct Steps {
 impl Steps {
     fn add(&mut self, surroundings: &Surroundings, operated: &OperatedArm<'_>, step: &GuidedStep) {
         self.q.extend(operated.arm.q());
-        self.tool.extend(operated.arm.tool_in_world().to_rows().as_flattened());
-        self.tool.extend([0.0, 0.0, 0.0, 1.0]);
+        self.tool.extend(values(&operated.arm.tool_in_world()));
         self.gap_m.push(step.tool.gap_m.unwrap_or(f64::NAN));
         self.limits.push(step.limit.map(word));
         let Surroundings { cell, .. } = surroundings;
@@ -252,20 +251,14 @@ impl GuidedArm {
     ) -> PyResult<Bound<'py, PyAny>> {
         let (py, allowed) = (poses.py(), share(speed_override)?);
         let poses = poses_of_rows(poses)?;
-        let progress = Progress::new(py, progress, poses.len(), "steps")?;
         let mut steps = Steps::default();
-        for part in poses.chunks(BETWEEN_SIGNALS) {
-            py.detach(|| {
-                let mut session = self.session()?;
-                for wanted in part {
-                    self.advance(&mut session, Some(wanted), allowed, &mut steps);
-                }
-                Ok::<(), Fault>(())
-            })?;
-            progress.add(py, part.len())?;
-            py.check_signals()?;
-        }
-        progress.end(py)?;
+        in_parts(py, &poses, progress, |part| {
+            let mut session = self.session()?;
+            for wanted in part {
+                self.advance(&mut session, Some(wanted), allowed, &mut steps);
+            }
+            Ok(())
+        })?;
         steps.told(py, self.joints())
     }
 

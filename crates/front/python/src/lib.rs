@@ -15,6 +15,7 @@ mod error;
 mod guided_arm;
 mod joint_map;
 mod kept_checker;
+mod matrix;
 mod mesh;
 mod model;
 mod monitor;

@@ -3,8 +3,8 @@
 use elbowroom::cell::Cell;
 use elbowroom::kinematics::LinkId;
 use elbowroom::proximity::tessellate::tessellate;
-use elbowroom::report::ReportScene;
-use elbowroom::robot::{Collider, Robot};
+use elbowroom::report::{ReportRobot, ReportScene};
+use elbowroom::robot::Robot;
 use elbowroom::spatial::{Pose, Vec3};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 use crate::error::Fault;
 use crate::rows::shaped;
 
-/// Largest distance of a curved surface from its triangles, m.
+/// Largest distance of a curved surface of an object from its triangles, m.
 const CHORD_ERROR_M: f64 = 1e-3;
 
 /// Which of the surfaces of a robot.
@@ -63,20 +63,32 @@ impl Triangles {
 
 /// The surfaces of the links of a robot, each in the frame of its link.
 pub fn of_links<'py>(py: Python<'py>, robot: &Robot, drawn: Drawn) -> PyResult<Bound<'py, PyDict>> {
+    let mut robot = robot.clone();
+    if drawn == Drawn::Collision {
+        robot.visuals.clear();
+    }
+    let tip = robot.chain.tip();
+    let scene = py.detach(|| ReportScene::new().robot("", &robot, Pose::IDENTITY, tip, Pose::IDENTITY, &[]));
     let meshes = PyDict::new(py);
-    for (index, name) in robot.chain.links().iter().enumerate() {
-        let of = |list: &'_ [Vec<Collider>]| list.get(index).filter(|list| !list.is_empty()).cloned();
-        let visual = if drawn == Drawn::Visual { of(&robot.visuals) } else { None };
-        let mut triangles = Triangles::default();
-        for collider in visual.or_else(|| of(&robot.colliders)).unwrap_or_default() {
-            let (vertices, faces) = tessellate(&collider.shape, CHORD_ERROR_M);
-            triangles.add(&vertices, &faces, &collider.in_link);
-        }
-        if let Some(mesh) = triangles.told(py)? {
-            meshes.set_item(name, mesh)?;
-        }
+    for robot in &scene.robots {
+        add_links(robot, "", &meshes)?;
     }
     Ok(meshes)
+}
+
+/// Adds the links of a robot, with its tool.
+fn add_links(robot: &ReportRobot, prefix: &str, meshes: &Bound<'_, PyDict>) -> PyResult<()> {
+    for (index, (name, link)) in robot.chain.links().iter().zip(&robot.link_meshes).enumerate() {
+        let tool = if robot.flange == LinkId(index) { &robot.tool[..] } else { &[] };
+        let mut triangles = Triangles::default();
+        for part in link.iter().chain(tool) {
+            triangles.add(&part.vertices, &part.triangles, &part.in_link);
+        }
+        if let Some(mesh) = triangles.told(meshes.py())? {
+            meshes.set_item(format!("{prefix}{name}"), mesh)?;
+        }
+    }
+    Ok(())
 }
 
 /// What the pages of a cell show: links with tools and loads as `robot/link`, in the frame of the link, and objects in their own.
@@ -84,16 +96,7 @@ pub fn of_cell<'py>(py: Python<'py>, cell: &Cell) -> PyResult<Bound<'py, PyDict>
     let scene = py.detach(|| ReportScene::of_cell(cell));
     let meshes = PyDict::new(py);
     for robot in &scene.robots {
-        for (index, (name, link)) in robot.chain.links().iter().zip(&robot.link_meshes).enumerate() {
-            let tool = if robot.flange == LinkId(index) { &robot.tool[..] } else { &[] };
-            let mut triangles = Triangles::default();
-            for part in link.iter().chain(tool) {
-                triangles.add(&part.vertices, &part.triangles, &part.in_link);
-            }
-            if let Some(mesh) = triangles.told(py)? {
-                meshes.set_item(format!("{}/{name}", robot.name), mesh)?;
-            }
-        }
+        add_links(robot, &format!("{}/", robot.name), &meshes)?;
     }
     for object in &scene.objects {
         let (vertices, faces) = tessellate(&object.shape, CHORD_ERROR_M);

@@ -10,7 +10,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::Rows;
-use crate::cell::Cell;
+use crate::cell::{Cell, joints_of};
 use crate::error::Fault;
 use crate::progress::Progress;
 use crate::rows::shaped;
@@ -185,10 +185,7 @@ impl Monitor {
     fn new(py: Python<'_>, cell: &Bound<'_, Cell>) -> PyResult<Self> {
         let cell = cell.get().model.clone();
         let state = py.detach(|| State::new(cell.clone()))?;
-        let of_robot = |robot: &CellRobot| {
-            robot.joint_names().into_iter().map(|joint| format!("{}.{joint}", robot.name)).collect::<Vec<_>>()
-        };
-        let joints = cell.robots.iter().flat_map(of_robot).collect();
+        let joints = joints_of(&cell.robots);
         Ok(Self { cell, state: Mutex::new(state), joints })
     }
 

@@ -10,6 +10,7 @@ use pyo3::types::PyMapping;
 
 use crate::arrays::{Rows, vector};
 use crate::error::Fault;
+use crate::places::robot_named;
 use crate::rows::shaped;
 
 /// The motions of robots: a mapping from their names.
@@ -20,11 +21,8 @@ pub fn motions_of(cell: &Cell, motions: &Bound<'_, PyAny>) -> Result<Vec<(RobotI
     };
     let motion = |item: Bound<'_, PyAny>| {
         let (name, trajectory): (String, Bound<'_, PyAny>) = item.extract()?;
-        let id = cell.robots.iter().position(|robot| robot.name == name).ok_or_else(|| {
-            let known: Vec<&str> = cell.robots.iter().map(|robot| robot.name.as_str()).collect();
-            Fault::no_robot(&name, &known)
-        })?;
-        let joints = cell.robots[id].joint_names();
+        let id = robot_named(cell, &name)?;
+        let joints = cell.robots[id.0].joint_names();
         let Ok(ordered) = trajectory.getattr("ordered") else {
             let class = trajectory.get_type().name().map(|n| n.to_string()).unwrap_or_default();
             return Err(Fault::Argument(format!("the motion of \"{name}\" is a {class}\n  write: a Trajectory")));
@@ -34,7 +32,7 @@ pub fn motions_of(cell: &Cell, motions: &Bound<'_, PyAny>) -> Result<Vec<(RobotI
         let q = Rows::of(&trajectory.getattr("q")?, "q", &joints)?.all()?;
         let rows = times_s.iter().zip(q.chunks_exact(joints.len().max(1)));
         let rows = rows.map(|(t_s, q)| TrajectoryRow { t_s: *t_s, q: q.to_vec() });
-        Ok((RobotId(id), JointTrajectory::new(rows.collect())))
+        Ok((id, JointTrajectory::new(rows.collect())))
     };
     motions.items()?.iter().map(motion).collect()
 }

@@ -1,8 +1,8 @@
-//! Objects at other places than in the file.
+//! Objects at other places than in the file, and robots by their names.
 
 use elbowroom::cell::Cell;
 use elbowroom::formats::suggest;
-use elbowroom::robot::ObjectId;
+use elbowroom::robot::{ObjectId, RobotId};
 use elbowroom::spatial::Pose;
 use pyo3::prelude::*;
 use pyo3::types::PyMapping;
@@ -25,4 +25,10 @@ pub fn objects_at(cell: &Cell, places: &Bound<'_, PyAny>) -> Result<Vec<(ObjectI
         Ok((ObjectId(object), pose_of(&pose)?))
     };
     places.items()?.iter().map(place).collect()
+}
+
+/// The robot of a cell with a name.
+pub fn robot_named(cell: &Cell, name: &str) -> Result<RobotId, Fault> {
+    let names: Vec<&str> = cell.robots.iter().map(|robot| robot.name.as_str()).collect();
+    names.iter().position(|known| *known == name).map(RobotId).ok_or_else(|| Fault::no_robot(name, &names))
 }

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use crate::arrays::Rows;
 use crate::cell::Cell;
 use crate::error::Fault;
+use crate::matrix::matrix;
 use crate::progress::Progress;
 use crate::robot::{Robot, joint_names, pose_of};
 use crate::rows::shaped;
@@ -107,9 +108,7 @@ impl ReachQuery {
     /// The pose of the base in the file, `(4, 4)`: the root link in the world, metres.
     #[getter]
     fn base<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.query.base_in_world().to_rows();
-        let values = [rows.as_flattened(), &[0.0, 0.0, 0.0, 1.0]].concat();
-        shaped(&PyArray1::from_vec(py, values), [4, 4])
+        matrix(py, &self.query.base_in_world())
     }
 
     /// Find out how the targets are reached from a place of the base.

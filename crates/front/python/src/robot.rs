@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Rows, vector};
 use crate::error::Fault;
+use crate::matrix::values;
 use crate::mesh::{self, Drawn};
 use crate::page;
 use crate::rows::{map_rows, shaped};
@@ -211,7 +212,7 @@ impl Robot {
     fn fk<'py>(&self, q: &Bound<'py, PyAny>, link: Option<&str>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let (rows, link) = (Rows::of(q, "q", &self.joint_names)?, self.link(link)?);
         let chain = self.chain();
-        let values = map_rows(
+        let poses = map_rows(
             q.py(),
             &rows,
             16,
@@ -219,11 +220,10 @@ impl Robot {
             |state, q, out| {
                 state.q.copy_from_slice(q);
                 chain.forward(state);
-                out[..12].copy_from_slice(state.link_in_root(link).to_rows().as_flattened());
-                out[12..].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
+                out.copy_from_slice(&values(&state.link_in_root(link)));
             },
         )?;
-        shaped(&values, [rows.len(), 4, 4])
+        shaped(&poses, [rows.len(), 4, 4])
     }
 
     /// Compute the geometric Jacobian of a point.

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::Fault;
+use crate::matrix::values;
 use crate::page;
 use crate::rows::shaped;
 
@@ -57,9 +58,8 @@ impl RunRecord {
     fn objects<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let by_name = PyDict::new(py);
         for track in &self.recording.objects {
-            let rows = track.poses.iter().map(|pose| (pose.to_rows(), [0.0, 0.0, 0.0, 1.0]));
-            let values: Vec<f64> = rows.flat_map(|(rows, last)| [rows.as_flattened(), &last].concat()).collect();
-            by_name.set_item(&track.name, shaped(&PyArray1::from_vec(py, values), [track.poses.len(), 4, 4])?)?;
+            let poses = PyArray1::from_vec(py, track.poses.iter().flat_map(values).collect());
+            by_name.set_item(&track.name, shaped(&poses, [track.poses.len(), 4, 4])?)?;
         }
         Ok(by_name)
     }

@@ -10,9 +10,10 @@ use pyo3::prelude::*;
 
 use crate::arrays::Rows;
 use crate::error::Fault;
+use crate::progress::Progress;
 
 /// Steps between two checks whether a signal has arrived: a step takes a few milliseconds at most.
-pub const BETWEEN_SIGNALS: usize = 16;
+const BETWEEN_SIGNALS: usize = 16;
 
 /// A cell with its scene, and the index of the table in it that the session is of.
 pub struct Surroundings {
@@ -47,6 +48,23 @@ pub fn named(what: &str, known: &[&str], name: Option<&str>) -> Result<usize, Fa
         },
     };
     Err(Fault::Argument(text))
+}
+
+/// Makes the steps of all inputs part by part: other threads of Python run during a part, and between two the progress is told and
+/// signals end the call.
+pub fn in_parts<T: Sync>(
+    py: Python<'_>,
+    inputs: &[T],
+    progress: bool,
+    mut steps: impl FnMut(&[T]) -> Result<(), Fault> + Send,
+) -> PyResult<()> {
+    let progress = Progress::new(py, progress, inputs.len(), "steps")?;
+    for part in inputs.chunks(BETWEEN_SIGNALS) {
+        py.detach(|| steps(part))?;
+        progress.add(py, part.len())?;
+        py.check_signals()?;
+    }
+    progress.end(py)
 }
 
 /// An override from 0 to 1.

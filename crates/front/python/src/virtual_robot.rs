@@ -10,12 +10,12 @@ use pyo3::prelude::*;
 use self_cell::self_cell;
 
 use crate::arrays::vector;
-use crate::cell::{Cell, matrix};
+use crate::cell::{Cell, joints_of};
 use crate::error::Fault;
-use crate::progress::Progress;
+use crate::matrix::{matrix, values};
 use crate::robot::pose_of;
 use crate::rows::shaped;
-use crate::session::{BETWEEN_SIGNALS, Surroundings, broken, named, poses_of_rows, share};
+use crate::session::{Surroundings, broken, in_parts, named, poses_of_rows, share};
 
 /// Distance between two robots beyond which it is not measured, m.
 const FAR_M: f64 = 0.1;
@@ -45,7 +45,7 @@ fn spec(surroundings: &Surroundings) -> &CellVirtualRobot {
 
 /// Several arms that carry a work-piece as one: they hold it, hand it over, and wait where they are not in the way.
 ///
-/// Members, grasps and settings are those of `[virtual_robot.NAME]` in the cell file; the stream of that table is not read, the
+/// Members, grasps and settings come from `[virtual_robot.NAME]` in the cell file; the stream of that table is not read, the
 /// desired poses come from the calls. Other robots and objects stay where they are at the start. The work-piece is always on its
 /// desired path: what stands in the way makes it slower. Threads that share a virtual robot take turns.
 ///
@@ -135,17 +135,11 @@ impl VirtualRobot {
         overrides: &[f64],
         progress: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let progress = Progress::new(py, progress, inputs.len(), "steps")?;
         let mut steps = Steps::default();
-        for part in inputs.chunks(BETWEEN_SIGNALS) {
-            py.detach(|| {
-                let mut session = self.session()?;
-                part.iter().try_for_each(|input| self.advance(&mut session, *input, overrides, &mut steps))
-            })?;
-            progress.add(py, part.len())?;
-            py.check_signals()?;
-        }
-        progress.end(py)?;
+        in_parts(py, inputs, progress, |part| {
+            let mut session = self.session()?;
+            part.iter().try_for_each(|input| self.advance(&mut session, *input, overrides, &mut steps))
+        })?;
         steps.told(py, self.joints())
     }
 
@@ -194,8 +188,7 @@ impl Steps {
         for member in 0..spec.members.len() {
             self.q.extend(arms.q(member));
         }
-        self.part.extend(arms.part_in_world().to_rows().as_flattened());
-        self.part.extend([0.0, 0.0, 0.0, 1.0]);
+        self.part.extend(values(&arms.part_in_world()));
         self.holders.push(cell.robots[spec.members[arms.holder()].robot.0].name.clone());
         self.rate.push(step.rate);
         self.holds.push(step.hold.map(|hold| spec.hold_in_words(cell, &hold)));
@@ -235,10 +228,7 @@ impl VirtualRobot {
     /// The names of their joints, `robot.joint`, in the order of the values.
     #[getter]
     fn joints(&self) -> Vec<String> {
-        let members = self.spec().members.iter().map(|member| &self.cell.robots[member.robot.0]);
-        members
-            .flat_map(|robot| robot.joint_names().into_iter().map(|joint| format!("{}.{joint}", robot.name)))
-            .collect()
+        joints_of(self.spec().members.iter().map(|member| &self.cell.robots[member.robot.0]))
     }
 
     /// Duration of a step: the tick of the cell, seconds.

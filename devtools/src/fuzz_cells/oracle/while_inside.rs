@@ -24,6 +24,9 @@ pub fn check(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], findings: &mut
             RegionKind::Monitored { slow_to } if is_at_once => slow_to,
             _ => None,
         };
+        if slow_to.is_none() && spec.output.is_none() && spec.warning_output.is_none() {
+            continue;
+        }
         for &robot in &place.robots {
             let counted = guarded[robot].iter().filter(|g| g.counts_for(place.guards));
             let pairs: Vec<SweptPair<'_>> = counted.map(|g| SweptPair::new(motion, g, robot, region)).collect();
@@ -59,7 +62,7 @@ impl Part<'_, '_> {
     fn is_near(&mut self, k: usize, within_m: f64) -> bool {
         if self.gap_m <= 0.0 {
             let distance = self.pair.distance(k, 0.0);
-            let is_inside = distance.upper <= 0.0 || self.pair.is_inside(k);
+            let is_inside = distance.upper <= 0.0 || self.pair.is_surrounded(k);
             self.near = is_inside || distance.upper < within_m;
             // Deep inside a mesh its surface is away; near its surface every tick is measured.
             self.gap_m = if is_inside { distance.lower } else { distance.lower - within_m };
