@@ -9,15 +9,20 @@ import numpy.typing as npt
 
 from elbowroom.errors import ArrayError
 
-__all__ = ["columns", "numbers", "split", "state"]
+__all__ = ["columns", "numbers", "real", "split", "state"]
+
+
+def real(value: Any) -> npt.NDArray[np.float64]:
+    """Return an argument as an array; complex numbers, whose imaginary parts NumPy drops, are a `TypeError`."""
+    if np.iscomplexobj(value):
+        raise TypeError("complex numbers")
+    return np.asarray(value, dtype=np.float64)
 
 
 def columns(first: npt.ArrayLike, second: npt.ArrayLike) -> tuple[npt.NDArray[np.float64], tuple[int, ...]]:
     """Return two arguments, broadcast, as `(N, 2)`, and their shape."""
     try:
-        if np.iscomplexobj(first) or np.iscomplexobj(second):
-            raise TypeError("complex numbers")
-        a, b = np.broadcast_arrays(np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64))
+        a, b = np.broadcast_arrays(real(first), real(second))
     except (TypeError, ValueError) as error:
         raise ArrayError(f"the arguments: {error}\n  write: numbers, or arrays whose shapes fit") from error
     if not (np.isfinite(a).all() and np.isfinite(b).all()):

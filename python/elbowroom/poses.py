@@ -7,6 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from elbowroom.columns import real
 from elbowroom.errors import ArrayError
 
 __all__ = ["PoseLike", "matrix", "row"]
@@ -18,16 +19,10 @@ PoseLike: TypeAlias = Any
 _WANTED = "a 4x4 array, or (xyz in metres, quaternion xyzw), or (xyz, scipy Rotation)"
 
 
-def _real(value: Any) -> npt.NDArray[np.float64]:
-    if np.iscomplexobj(value):
-        raise TypeError("complex numbers")
-    return np.asarray(value, dtype=np.float64)
-
-
 def _rotation(value: Any) -> npt.NDArray[np.float64]:
     if hasattr(value, "as_matrix"):
-        return _real(value.as_matrix())
-    x, y, z, w = _real(value) / np.linalg.norm(value)
+        return real(value.as_matrix())
+    x, y, z, w = real(value) / np.linalg.norm(value)
     return np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -58,14 +53,14 @@ def matrix(pose: PoseLike) -> list[list[float]]:
     try:
         if isinstance(pose, tuple) and len(pose) == 2:
             found = np.eye(4)
-            place = _real(pose[0])
+            place = real(pose[0])
             if place.shape != (3,):
                 raise ArrayError(f"`pose` has a place of shape {place.shape}\n  write: {_WANTED}")
             found[:3, 3] = place
             with np.errstate(all="ignore"):
                 found[:3, :3] = _rotation(pose[1])
         else:
-            found = _real(pose)
+            found = real(pose)
     except (TypeError, ValueError) as error:
         raise ArrayError(f"`pose`: {error}\n  write: {_WANTED}") from error
     if found.shape != (4, 4):

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from elbowroom import poses
 from elbowroom._elbowroom import Cell, Robot
+from elbowroom.columns import real
 from elbowroom.errors import ArgumentError, ArrayError, FileError
 from elbowroom.files import obj, unwritable
 from elbowroom.interop import temporary_folder
@@ -304,7 +305,7 @@ def _array(name: str, values: npt.ArrayLike, kind: type) -> npt.NDArray[Any]:
 
 def _numbers(name: str, values: npt.ArrayLike, count: int) -> list[float]:
     try:
-        found = np.asarray(values, dtype=np.float64)
+        found = real(values)
     except (TypeError, ValueError) as error:
         raise ArrayError(f"`{name}`: {error}\n  write: {count} numbers, metres") from error
     if found.shape != (count,) or not np.isfinite(found).all():
@@ -371,8 +372,8 @@ class _Writer:
         raise ArgumentError(f"a {type(value).__name__} has no place in a cell file\n  write: numbers, text, lists or dicts")
 
     def _mesh(self, mesh: _Mesh, name: str) -> str:
-        # Named after its contents, so it replaces no other mesh.
-        readable = re.sub(r"[^A-Za-z0-9_-]", "_", name)
+        # Named after its contents, so it replaces no other mesh. Names of objects may be longer than those of files.
+        readable = re.sub(r"[^A-Za-z0-9_-]", "_", name)[:64]
         file = self._path.with_name(f"{self._path.stem}.{readable}.{hashlib.sha256(mesh.obj).hexdigest()[:12]}.obj")
         file.write_bytes(mesh.obj)
         return file.name

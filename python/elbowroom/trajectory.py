@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from elbowroom import _elbowroom
-from elbowroom.columns import numbers
+from elbowroom.columns import numbers, real
 from elbowroom.errors import ArgumentError, ArrayError, FileError
 from elbowroom.files import written
 
@@ -154,7 +154,7 @@ class Trajectory:
     def at(self, times_s: npt.ArrayLike) -> _Numbers:
         """Return the states at times: `(dof,)` for a number, `(K, dof)` for an array."""
         try:
-            times = np.asarray(times_s, dtype=np.float64)
+            times = real(times_s)
         except (TypeError, ValueError) as error:
             raise ArrayError(f"`times_s`: {error}\n  write: seconds") from error
         if not np.isfinite(times).all():
@@ -232,7 +232,7 @@ def _number(name: str, value: Any, wanted: str) -> float:
 
 def _per_joint(name: str, value: npt.ArrayLike, dof: int) -> list[float]:
     try:
-        rates = np.broadcast_to(np.asarray(value, dtype=np.float64), (dof,))
+        rates = np.broadcast_to(real(value), (dof,))
     except (TypeError, ValueError) as error:
         raise ArrayError(f"`{name}`: {error}\n  write: a number, or one per joint") from error
     if not (np.isfinite(rates).all() and (rates > 0.0).all()):

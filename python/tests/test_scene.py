@@ -79,6 +79,12 @@ def test_a_mesh_in_memory_is_that_of_a_file(tmp_path: Path) -> None:
         assert (other == answers[0]).all()
 
 
+def test_a_mesh_may_have_a_name_that_is_longer_than_those_of_files() -> None:
+    scene = an_arm()
+    scene.add_mesh("part" * 200, CUBE)
+    assert list(scene.cell().objects) == ["part" * 200]
+
+
 def test_a_saved_scene_is_a_cell_file_that_moves_with_its_meshes(tmp_path: Path, rx60b: Path) -> None:
     scene = er.Scene("two arms")
     robot = er.Robot.load(rx60b, rx60b.with_suffix(".srdf"))
@@ -129,6 +135,7 @@ def test_what_has_no_place_in_a_scene_teaches() -> None:
     at = ([0.6, 0, 0], [0, 0, 0, 1])
     refused: tuple[tuple[Callable[[], None], type[er.Error], str], ...] = (
         (lambda: scene.add_box("box", [1, 2]), er.ArrayError, "`size_m`"),
+        (lambda: scene.add_box("box", [1, 2, 3j]), er.ArrayError, "complex numbers"),
         (lambda: scene.add_box("box", [1, 2, np.nan]), er.ArrayError, "finite"),
         (lambda: scene.add_box("box", words), er.ArrayError, "`size_m`"),
         (lambda: scene.add_box("", [1, 2, 3]), er.ArgumentError, "a name is text"),

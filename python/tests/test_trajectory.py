@@ -126,6 +126,8 @@ def test_what_is_no_trajectory_teaches(exchange: Path) -> None:
     for wrong in odd:
         with pytest.raises(er.ArgumentError, match="write: |give "):
             er.Trajectory.time_optimal([[0.0], [1.0]], **limits | wrong)
+    with pytest.raises(er.ArrayError, match="complex numbers"):
+        er.Trajectory([0.0, 1.0], [[0.0], [1.0]]).at(0.5 + 1j)
     with pytest.raises(er.ArrayError, match="`velocity`"):
         er.Trajectory.time_optimal([[0.0], [1.0]], **limits | {"velocity": [1.0, 2.0]})
     for period in (1e-9, 0.0, -1.0, np.inf, np.nan):

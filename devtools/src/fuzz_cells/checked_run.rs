@@ -1,7 +1,7 @@
 //! One cell, run and checked.
 
 use elbowroom_cell::Cell;
-use elbowroom_sim::{InputFault, RunOptions, simulate};
+use elbowroom_sim::{InputFault, Recording, RunOptions, simulate};
 
 use super::generate::Places;
 use super::oracle::{self, Findings, Promises};
@@ -19,11 +19,28 @@ pub struct CheckedRun {
 
 /// Runs a cell with these faults of its input; `repeat` is the number of passes, as in `run --repeat`.
 pub fn run(cell: &Cell, faults: &[InputFault], repeat: u32) -> Result<CheckedRun, String> {
+    run_and_judge(cell, faults, repeat, |_, _| ())
+}
+
+/// Like [`run`], for a cell that is not written to a file yet: what its files say is judged too.
+pub fn run_spec(spec: &CellSpec, places: &Places<'_>) -> Result<CheckedRun, String> {
+    run_and_judge(&spec.parse(places.cells)?, &spec.faults, spec.repeat, |recording, findings| {
+        oracle::recorded::check(spec, recording, findings);
+    })
+}
+
+fn run_and_judge(
+    cell: &Cell,
+    faults: &[InputFault],
+    repeat: u32,
+    judge: impl Fn(&Recording, &mut Findings),
+) -> Result<CheckedRun, String> {
     let options = RunOptions { faults: faults.to_vec(), repeat: repeat.max(1), ..RunOptions::default() };
     let outcome = simulate(cell, &options).map_err(|e| e.to_string())?;
     let robots = &outcome.recording.robots;
-    let mut findings = oracle::check(cell, &outcome.recording, &Promises::new(cell), outcome.has_violation())?;
+    let mut findings = oracle::check(cell, &outcome.recording, &Promises::new(cell), outcome.has_violation());
     oracle::readings::check(cell, &outcome.recording, faults, &mut findings);
+    judge(&outcome.recording, &mut findings);
     Ok(CheckedRun {
         findings,
         finished: robots.iter().filter(|r| r.finished).count(),
@@ -32,9 +49,4 @@ pub fn run(cell: &Cell, faults: &[InputFault], repeat: u32) -> Result<CheckedRun
         robots: robots.len(),
         simulated_s: outcome.recording.duration_s,
     })
-}
-
-/// Like [`run`], for a cell that is not written to a file yet.
-pub fn run_spec(spec: &CellSpec, places: &Places<'_>) -> Result<CheckedRun, String> {
-    run(&spec.parse(places.cells)?, &spec.faults, spec.repeat)
 }

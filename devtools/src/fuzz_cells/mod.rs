@@ -246,7 +246,7 @@ fn report(
         kind.name(),
         options.seed
     );
-    if std::fs::write(&file, head + &text).and_then(|()| small.write_recordings(places.cells)).is_ok() {
+    if std::fs::write(&file, head + &text).and_then(|()| small.write_files(places.cells)).is_ok() {
         summary.files.push((file, words));
     }
 }

@@ -1,7 +1,6 @@
 //! Results of the fuzzer, in a table or as JSON.
 
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -35,53 +34,68 @@ pub struct Summary {
     pub files: Vec<(PathBuf, String)>,
 }
 
-/// Numbers of cells with at least one finding, by kind of finding.
+/// Numbers of cells with findings: by the name of the finding, and of all.
 #[derive(Debug, Default)]
 struct FailingCells {
-    entries: usize,
-    broken_promises: usize,
-    two_inside: usize,
-    silent: usize,
-    too_hard: usize,
-    too_near: usize,
-    energy_made: usize,
-    cooperating: usize,
-    tilted: usize,
-    wrong_cells: usize,
-    off_entry: usize,
-    misread: usize,
-    slowed_mechanisms: usize,
-    zones_and_outputs: usize,
-    any: usize,
+    by_name: BTreeMap<&'static str, usize>,
+    all: usize,
 }
 
 impl FailingCells {
     fn add(&mut self, findings: &[Finding]) {
-        let has = |test: fn(&Finding) -> bool| usize::from(findings.iter().any(test));
-        self.entries += has(|f| matches!(f, Finding::Entry { .. }));
-        self.broken_promises += has(|f| matches!(f, Finding::Excluded { .. }));
-        self.two_inside += has(|f| matches!(f, Finding::TwoInside { .. }));
-        self.silent += has(|f| matches!(f, Finding::SilentDeadlock { .. }));
-        self.too_hard += has(|f| matches!(f, Finding::TooHard { .. }));
-        self.too_near += has(|f| matches!(f, Finding::TooNear { .. }));
-        self.energy_made += has(|f| matches!(f, Finding::EnergyMade { .. }));
-        self.cooperating += has(|f| {
-            matches!(
-                f,
-                Finding::NotHeld { .. }
-                    | Finding::OffPath { .. }
-                    | Finding::WrongView { .. }
-                    | Finding::Touched { .. }
-                    | Finding::TooFast { .. }
-            )
-        });
-        self.tilted += has(|f| matches!(f, Finding::Tilted { .. }));
-        self.wrong_cells += has(|f| matches!(f, Finding::WrongCell { .. }));
-        self.off_entry += has(|f| matches!(f, Finding::OffEntry { .. }));
-        self.misread += has(|f| matches!(f, Finding::MisreadLimits { .. }));
-        self.slowed_mechanisms += has(|f| matches!(f, Finding::Slowed { .. }));
-        self.zones_and_outputs += has(|f| matches!(f, Finding::TooFastInZone { .. } | Finding::OutputOff { .. }));
-        self.any += usize::from(!findings.is_empty());
+        let names: BTreeSet<&'static str> = findings.iter().map(name).collect();
+        for name in names {
+            *self.by_name.entry(name).or_default() += 1;
+        }
+        self.all += usize::from(!findings.is_empty());
+    }
+
+    fn with(&self, name: &str) -> usize {
+        self.by_name.get(name).copied().unwrap_or_default()
+    }
+}
+
+/// What findings are called in tables, and in JSON with underscores.
+const NAMES: [&str; 15] = [
+    "entries",
+    "broken promises",
+    "two inside",
+    "silent deadlocks",
+    "too hard",
+    "too near",
+    "energy made",
+    "cooperating",
+    "tilted",
+    "wrong cells",
+    "off entry",
+    "misread limits",
+    "slowed mechanisms",
+    "zones and outputs",
+    "off recordings",
+];
+
+/// The name of a finding.
+fn name(finding: &Finding) -> &'static str {
+    match finding {
+        Finding::Entry { .. } => "entries",
+        Finding::Excluded { .. } => "broken promises",
+        Finding::TwoInside { .. } => "two inside",
+        Finding::SilentDeadlock { .. } => "silent deadlocks",
+        Finding::TooHard { .. } => "too hard",
+        Finding::TooNear { .. } => "too near",
+        Finding::EnergyMade { .. } => "energy made",
+        Finding::NotHeld { .. }
+        | Finding::OffPath { .. }
+        | Finding::WrongView { .. }
+        | Finding::Touched { .. }
+        | Finding::TooFast { .. } => "cooperating",
+        Finding::Tilted { .. } => "tilted",
+        Finding::WrongCell { .. } => "wrong cells",
+        Finding::OffEntry { .. } => "off entry",
+        Finding::MisreadLimits { .. } => "misread limits",
+        Finding::Slowed { .. } => "slowed mechanisms",
+        Finding::TooFastInZone { .. } | Finding::OutputOff { .. } => "zones and outputs",
+        Finding::OffRecording { .. } => "off recordings",
     }
 }
 
@@ -92,7 +106,7 @@ impl Summary {
 
     /// Number of cells with findings.
     pub fn failed(&self) -> usize {
-        self.failing.any
+        self.failing.all
     }
 
     pub(super) fn add(&mut self, run: &CheckedRun) {
@@ -116,31 +130,20 @@ impl Summary {
     }
 
     pub fn progress(&self) -> String {
+        let refused: usize = self.refused.values().sum();
+        let found: Vec<String> = self.failing.by_name.iter().map(|(name, count)| format!(", {name} {count}")).collect();
         format!(
-            "{}: {} cells, {} refused, {} entries, {} broken promises, {} two inside, {} silent deadlocks, {} too hard, {} guided too near, {} with energy made, {} cooperating wrongly, {} tilted, {} in a wrong cell, {} off their entry, {} with misread limits, {} with slowed mechanisms, {} too fast in a zone or with an output off",
+            "{}: {} cells, {refused} refused, {} with findings{}",
             self.kind,
             self.cells,
-            self.refused.values().sum::<usize>(),
-            self.failing.entries,
-            self.failing.broken_promises,
-            self.failing.two_inside,
-            self.failing.silent,
-            self.failing.too_hard,
-            self.failing.too_near,
-            self.failing.energy_made,
-            self.failing.cooperating,
-            self.failing.tilted,
-            self.failing.wrong_cells,
-            self.failing.off_entry,
-            self.failing.misread,
-            self.failing.slowed_mechanisms,
-            self.failing.zones_and_outputs
+            self.failed(),
+            found.concat()
         )
     }
 
-    fn rows(&self) -> [(&'static str, String); 24] {
+    fn rows(&self) -> Vec<(&'static str, String)> {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
-        [
+        let mut rows = vec![
             ("cells", self.cells.to_string()),
             ("refused", self.refused.values().sum::<usize>().to_string()),
             ("simulated s", format!("{:.0}", self.simulated_s)),
@@ -148,34 +151,22 @@ impl Summary {
             ("robots slowed", share(self.slowed)),
             ("robots stopped", share(self.stopped)),
             ("robots finished", share(self.finished)),
-            ("entries", self.failing.entries.to_string()),
-            ("broken promises", self.failing.broken_promises.to_string()),
-            ("two inside", self.failing.two_inside.to_string()),
             ("deadlocks", self.deadlocks.to_string()),
-            ("silent deadlocks", self.failing.silent.to_string()),
-            ("braked too hard", self.failing.too_hard.to_string()),
-            ("guided too near", self.failing.too_near.to_string()),
-            ("energy made", self.failing.energy_made.to_string()),
-            ("cooperating wrongly", self.failing.cooperating.to_string()),
-            ("tilted", self.failing.tilted.to_string()),
-            ("wrong_cells", self.failing.wrong_cells.to_string()),
-            ("off their entry", self.failing.off_entry.to_string()),
-            ("misread limits", self.failing.misread.to_string()),
-            ("slowed mechanisms", self.failing.slowed_mechanisms.to_string()),
-            ("zones and outputs", self.failing.zones_and_outputs.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
-        ]
+        ];
+        rows.extend(NAMES.map(|name| (name, self.failing.with(name).to_string())));
+        rows
     }
 }
 
 /// Prints a table, and the failing cells.
 pub fn print(summaries: &[Summary]) {
-    let names = summaries.iter().map(|s| format!(" {:>10}", s.kind)).collect::<Vec<_>>().concat();
+    let names = summaries.iter().map(|s| format!(" {:>11}", s.kind)).collect::<Vec<_>>().concat();
     println!("{:<18}{names}", "");
     let rows: Vec<_> = summaries.iter().map(Summary::rows).collect();
-    for i in 0..rows.first().map_or(0, |r| r.len()) {
-        let values = rows.iter().map(|r| format!(" {:>10}", r[i].1)).collect::<Vec<_>>().concat();
+    for i in 0..rows.first().map_or(0, Vec::len) {
+        let values = rows.iter().map(|r| format!(" {:>11}", r[i].1)).collect::<Vec<_>>().concat();
         println!("{:<18}{values}", rows[0][i].0);
     }
     for s in summaries {
@@ -190,36 +181,29 @@ pub fn print(summaries: &[Summary]) {
 
 /// Formats one line of JSON.
 pub fn json(seed: u64, summaries: &[Summary]) -> String {
-    let mut text = format!("{{\"seed\":{seed},\"kinds\":[");
-    for (i, s) in summaries.iter().enumerate() {
-        let comma = if i == 0 { "" } else { "," };
-        let _ = write!(
-            text,
-            "{comma}{{\"kind\":\"{}\",\"cells\":{},\"refused\":{},\"robots\":{},\"finished\":{},\"slowed\":{},\"stopped\":{},\
-             \"entries\":{},\"broken_promises\":{},\"two_inside\":{},\"deadlocks\":{},\"silent_deadlocks\":{},\"too_hard\":{},\"too_near\":{},\"energy_made\":{},\"unforeseen_entries\":{},\
-             \"failed\":{},\"simulated_s\":{:.3},\"took_s\":{:.3}}}",
-            s.kind,
-            s.cells,
-            s.refused.values().sum::<usize>(),
-            s.robots,
-            s.finished,
-            s.slowed,
-            s.stopped,
-            s.failing.entries,
-            s.failing.broken_promises,
-            s.failing.two_inside,
-            s.deadlocks,
-            s.failing.silent,
-            s.failing.too_hard,
-            s.failing.too_near,
-            s.failing.energy_made,
-            s.unforeseen,
-            s.failing.any,
-            s.simulated_s,
-            s.took.as_secs_f64()
-        );
-    }
-    text + "]}"
+    let kind = |s: &Summary| {
+        let mut counts = serde_json::Map::new();
+        for name in NAMES {
+            counts.insert(name.replace(' ', "_"), s.failing.with(name).into());
+        }
+        let mut of_kind = serde_json::json!({
+            "kind": s.kind,
+            "cells": s.cells,
+            "refused": s.refused.values().sum::<usize>(),
+            "robots": s.robots,
+            "finished": s.finished,
+            "slowed": s.slowed,
+            "stopped": s.stopped,
+            "deadlocks": s.deadlocks,
+            "unforeseen_entries": s.unforeseen,
+            "failed": s.failed(),
+            "simulated_s": s.simulated_s,
+            "took_s": s.took.as_secs_f64(),
+        });
+        of_kind.as_object_mut().expect("it is an object").append(&mut counts);
+        of_kind
+    };
+    serde_json::json!({ "seed": seed, "kinds": summaries.iter().map(kind).collect::<Vec<_>>() }).to_string()
 }
 
 /// Formats a finding as a sentence.
@@ -294,6 +278,12 @@ fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
             robot(r),
             cell.regions[*region].region.name
         ),
+        Finding::OffRecording { robot: r, t_s, ahead_s: Some(ahead_s) } => {
+            format!("robot {} is {ahead_s:.6} s ahead of its recording at {t_s:.4} s", robot(r))
+        }
+        Finding::OffRecording { robot: r, t_s, ahead_s: None } => {
+            format!("robot {} is not on the path of its recording at {t_s:.4} s", robot(r))
+        }
         Finding::Slowed { robot: r, t_s } => format!("mechanism {} was slowed down at {t_s:.4} s", robot(r)),
         Finding::MisreadLimits { robot: r, joint, t_s, stopped } => format!(
             "robot {}: a reading of joint {joint} {} at {t_s:.4} s",

@@ -68,6 +68,11 @@ impl PoseTrack {
         (!rows.is_empty()).then_some(Self { file, rows })
     }
 
+    /// The rows of the file: times (s, increasing) and poses in the world.
+    pub fn rows(&self) -> &[(f64, Pose)] {
+        &self.rows
+    }
+
     /// Pose of the frame in the world at a time (s).
     pub fn pose(&self, t_s: f64) -> Pose {
         match self.interval(t_s) {

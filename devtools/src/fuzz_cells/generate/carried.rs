@@ -110,7 +110,7 @@ fn on_an_evading_robot(spec: &mut CellSpec, folder: &Path, random: &mut Random) 
     let via = vec![text(vector(place) - ahead * random.between(0.0, behind))];
     let motion = MotionSpec { via, speed: random.scaled(0.2, 1.0), start: 0.0, repeat: "no", turn: [0.0; 3] };
     let shape = "shape = \"box\"\nsize = [0.3, 0.3, 0.3]\n".to_owned();
-    spec.objects.push(ObjectSpec { name: "cart".into(), shape, at, rpy: [0.0; 3], motion: Some(motion) });
+    spec.objects.push(ObjectSpec { name: "cart".into(), shape, at, rpy: [0.0; 3], motion: Some(motion), belt: None });
     let mut region = region::at(spec, 0, [0.0; 3], "m0", random);
     region.shape = format!("shape = \"sphere\"\ncentre = [0, 0, 0]\nradius = {radius}\n");
     (region.robots, region.follow) = (vec![0], Some(FollowSpec::Robot { robot: 1, frame: "flange" }));

@@ -80,7 +80,7 @@ fn try_cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
         shape: format!("shape = \"box\"\nsize = {}\n", list(&[width, width, length])),
         at: bar.translation.to_array().map(rounded),
         rpy: bar.rotation.to_rpy().map(rounded),
-        motion: None,
+        ..ObjectSpec::default()
     });
     spec.guidance = Some(guidance);
     if random.percent(30) {

@@ -62,7 +62,8 @@ fn lines(table: &[&str], own: &str, has_faults: bool, random: &mut Random) -> Ve
                 some(&mut lines, 30, random, |r| format!("thickness = {}", r.scaled(0.01, 0.3)));
             }
         }
-        ["encoder", _] => {
+        // The rows of a file say where a belt is.
+        ["encoder", _] if own.contains("speed =") => {
             some(&mut lines, 25, random, |r| format!("at = {}", r.between(-0.5, 0.5)));
             some(&mut lines, 25, random, |r| format!("end = {}", r.between(3.0, 8.0)));
         }

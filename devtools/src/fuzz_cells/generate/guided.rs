@@ -105,7 +105,7 @@ pub fn object(name: &str, tool: Vec3, random: &mut Random) -> ObjectSpec {
         ),
         _ => ("shape = \"mesh\"\nmesh = \"corner.obj\"\n".to_owned(), random.vector(1.5)),
     };
-    ObjectSpec { name: name.into(), shape, at: at.to_array().map(rounded), rpy, motion: None }
+    ObjectSpec { name: name.into(), shape, at: at.to_array().map(rounded), rpy, ..ObjectSpec::default() }
 }
 
 fn operator(random: &mut Random) -> String {

@@ -7,6 +7,7 @@ mod exchange;
 mod extras;
 mod faults;
 mod grids;
+mod gripping;
 mod guided;
 mod moving;
 mod moving_object;
@@ -19,7 +20,7 @@ mod settings;
 mod tools;
 
 use super::random::Random;
-use super::spec::CellSpec;
+use super::spec::{CellSpec, StepSpec};
 
 pub use settings::Places;
 use settings::settings;
@@ -45,10 +46,12 @@ pub enum Kind {
     Guided,
     /// Robots that carry a bar as one, among objects and before regions.
     Cooperating,
+    /// Robots that grip parts, carry them past regions and put them down.
+    Gripping,
 }
 
 impl Kind {
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Stop,
         Self::Exchange,
         Self::Faults,
@@ -58,6 +61,7 @@ impl Kind {
         Self::Planned,
         Self::Guided,
         Self::Cooperating,
+        Self::Gripping,
     ];
 
     pub fn name(self) -> &'static str {
@@ -71,6 +75,7 @@ impl Kind {
             Self::Planned => "planned",
             Self::Guided => "guided",
             Self::Cooperating => "cooperating",
+            Self::Gripping => "gripping",
         }
     }
 
@@ -79,7 +84,7 @@ impl Kind {
         match self {
             Self::Stop => 80,
             Self::Faults | Self::Moving | Self::Recordings => 35,
-            Self::Exchange | Self::Tools => 20,
+            Self::Exchange | Self::Tools | Self::Gripping => 20,
             Self::Planned => 8,
             Self::Cooperating | Self::Guided => 6,
         }
@@ -100,7 +105,17 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
         grids::some(&mut spec, &cell, random);
     }
     extras::add(&mut spec, random);
+    if spec.repeat == 0 && can_repeat(kind, &spec) && random.percent(10) {
+        spec.repeat = 2;
+    }
     spec
+}
+
+/// Whether the programs can run again from where they end; a person who guides a robot does not come again.
+fn can_repeat(kind: Kind, spec: &CellSpec) -> bool {
+    let grips = |step: &StepSpec| matches!(step, StepSpec::Grip(_));
+    !matches!(kind, Kind::Guided | Kind::Cooperating)
+        && !spec.robots.iter().any(|robot| robot.program.steps.iter().any(grips))
 }
 
 fn without_grids(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
@@ -117,6 +132,7 @@ fn without_grids(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSp
         Kind::Recordings => recordings::cell(random, places),
         Kind::Guided => guided::cell(random, places),
         Kind::Cooperating => cooperating::cell(random, places),
+        Kind::Gripping => gripping::cell(random, places),
         Kind::Planned => {
             let mut spec = stop(random, places);
             planned::plan(&mut spec, random);

@@ -36,7 +36,14 @@ pub fn moving_object(random: &mut Random, name: String, place: Vec3, meets_s: f6
         _ => "shape = \"sphere\"\nradius = 0.01\n".to_owned(),
     };
     let rpy = if random.percent(50) { random.vector(3.0) } else { [0.0; 3] };
-    ObjectSpec { name, shape, at: text(at), rpy, motion: Some(MotionSpec { via, speed, start, repeat, turn }) }
+    ObjectSpec {
+        name,
+        shape,
+        at: text(at),
+        rpy,
+        motion: Some(MotionSpec { via, speed, start, repeat, turn }),
+        belt: None,
+    }
 }
 
 /// Returns the frame of the object while it moves in a straight line.

@@ -1,9 +1,11 @@
 //! Random cells with robots that play recordings, or repeat their programs.
 
 use super::settings::{Places, laws, settings};
-use super::{rail, region, robot};
+use super::{moving, rail, region, robot};
 use crate::fuzz_cells::random::{Random, rounded};
-use crate::fuzz_cells::spec::{CellSpec, DhRow, Model, RecordingSpec, RegionSpec, RobotSpec, StepSpec};
+use crate::fuzz_cells::spec::{
+    CellSpec, DhRow, Model, RecordingLayout, RecordingSpec, RegionSpec, RobotSpec, StepSpec,
+};
 
 /// Largest number of rows of a recording.
 const MOST_ROWS: usize = 3000;
@@ -30,7 +32,9 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     }
     spec.robots.push(one);
     let regions = random.whole(1, 3);
-    with_regions(spec, places, regions, |_, _| {}, random)
+    let mut spec = with_regions(spec, places, regions, |_, _| {}, random);
+    moving::some(&mut spec, random);
+    spec
 }
 
 /// Makes a slow recording, and puts a region on the faster way back from its end to its start, with a zone that is
@@ -106,7 +110,43 @@ fn recording(robot: &RobotSpec, joints: &[DhRow], harder: f64, random: &mut Rand
     for (t_s, _) in &mut rows {
         *t_s = rounded_time(*t_s - begin_s);
     }
-    RecordingSpec { rows }
+    let mut recording = RecordingSpec { rows, layout: None };
+    if random.percent(50) {
+        let layout = layout(joints, random);
+        if let Some(period_ms) = layout.period_ms {
+            recording.rows = every(period_ms / 1000.0, &recording.rows);
+        }
+        recording.layout = Some(layout);
+    }
+    recording
+}
+
+/// Chooses how the file of a recording says its rows.
+fn layout(joints: &[DhRow], random: &mut Random) -> RecordingLayout {
+    RecordingLayout {
+        slides: joints.iter().map(|j| j.slides).collect(),
+        in_degrees: random.percent(50),
+        length: random.one(&[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254)]),
+        time_unit: random.one(&[("s", 1.0), ("ms", 1e-3), ("us", 1e-6)]),
+        renames: random.percent(50),
+        separator: random.one(&[',', ';', '\t']),
+        offset_s: if random.percent(50) { random.between(0.05, 1.5) } else { 0.0 },
+        period_ms: random.percent(40).then(|| random.one(&[4.0, 8.0, 12.0, 40.0])),
+    }
+}
+
+/// Returns rows at equal times, on the straight lines between these rows.
+fn every(period_s: f64, rows: &[(f64, Vec<f64>)]) -> Vec<(f64, Vec<f64>)> {
+    let end_s = rows[rows.len() - 1].0;
+    let count = ((end_s / period_s) as usize).clamp(1, MOST_ROWS);
+    let at = |i: usize| {
+        let t_s = i as f64 * period_s;
+        let next = rows.partition_point(|row| row.0 <= t_s).clamp(1, rows.len() - 1);
+        let ((t0, a), (t1, b)) = (&rows[next - 1], &rows[next]);
+        let share = ((t_s - t0) / (t1 - t0)).clamp(0.0, 1.0);
+        (t_s, a.iter().zip(b).map(|(a, b)| a + (b - a) * share).collect())
+    };
+    (0..=count).map(at).collect()
 }
 
 /// Returns the time (s) that a joint needs for the polynomial by its speed and acceleration.

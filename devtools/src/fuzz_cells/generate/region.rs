@@ -75,12 +75,25 @@ fn around(
         3 => (format!("shape = \"box\"\nfrom = [{x0}, {y0}, {z0}]\nto = [{x1}, {y1}, {z1}]\n"), false),
         _ => {
             let corners = format!("[[{x0}, {y0}], [{x1}, {y0}], [{x1}, {y1}], [{x0}, {y1}]]");
-            (format!("corners = {corners}\nfloor = {z0}\nheight = {}\n", rounded(z1 - z0)), true)
+            let gates = if random.percent(40) { gate([x0, x1], y1, [z0, z1], random) } else { String::new() };
+            (format!("corners = {corners}\nfloor = {z0}\nheight = {}\n{gates}", rounded(z1 - z0)), true)
         }
     };
     let keep = if is_fence { "" } else { "keep = \"inside\"\n" };
     let region = at(spec, robot, border, name, random);
     RegionSpec { shape: shape + keep, is_fence, robots: vec![robot], ..region }
+}
+
+/// Makes an opening in the wall along x at a place of y; some are as high as the wall.
+fn gate([x0, x1]: [f64; 2], y: f64, [z0, z1]: [f64; 2], random: &mut Random) -> String {
+    let mut between = |low: f64, high: f64| {
+        let (a, b) = (random.between(0.05, 0.45), random.between(0.55, 0.95));
+        [rounded(low + (high - low) * a), rounded(low + (high - low) * b)]
+    };
+    let ([from, to], [bottom, top]) = (between(x0, x1), between(z0, z1));
+    let low = if random.percent(50) { format!(", bottom = {bottom}") } else { String::new() };
+    let high = if random.percent(50) { format!(", top = {top}") } else { String::new() };
+    format!("gates = [{{ from = [{from}, {y}], to = [{to}, {y}]{low}{high} }}]\n")
 }
 
 /// Returns a point on or near a guarded solid, somewhere on the program's path.
@@ -107,11 +120,7 @@ pub fn point_on_the_path(spec: &CellSpec, cell: &Cell, robot: usize, random: &mu
 
 /// Returns the start and the targets of the steps.
 fn ends<'s>(start: &'s Vec<f64>, steps: &'s [StepSpec]) -> Vec<&'s Vec<f64>> {
-    let target = |s: &'s StepSpec| match s {
-        StepSpec::Joint { to, .. } | StepSpec::Linear { to, .. } | StepSpec::Planned { to, .. } => Some(to),
-        _ => None,
-    };
-    std::iter::once(start).chain(steps.iter().filter_map(target)).collect()
+    std::iter::once(start).chain(steps.iter().filter_map(StepSpec::target)).collect()
 }
 
 /// Returns up to a dozen rows of a recording, and the first one again: a robot that repeats it drives back.
@@ -139,7 +148,8 @@ fn guards(spec: &CellSpec, robot: usize, random: &mut Random) -> Vec<&'static st
     let carries = |i: usize| {
         let hand = &spec.robots[i].hand;
         let has_tools = !hand.tools.is_empty() && hand.tools.iter().all(|t| t.solid.is_some());
-        hand.tool_box.is_some() || hand.load.is_some() || has_tools
+        let grips = spec.robots[i].program.steps.iter().any(|step| matches!(step, StepSpec::Grip(_)));
+        hand.tool_box.is_some() || hand.load.is_some() || has_tools || grips
     };
     match random.whole(0, 9) {
         0..=1 => vec!["tcp"],

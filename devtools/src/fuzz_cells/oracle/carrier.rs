@@ -5,7 +5,7 @@ use elbowroom_sim::Recording;
 
 use super::arm::Arm;
 use super::frame::Frame;
-use super::track::Track;
+use super::track::{Track, way_m};
 
 /// Source that a region follows.
 #[derive(Debug)]
@@ -14,6 +14,8 @@ pub enum Carrier {
     Belt(Encoder),
     /// An object, at its recorded poses.
     Object(Track),
+    /// Rows of a file: times (s) and frames.
+    Poses(Vec<(f64, Frame)>),
     Robot {
         robot: usize,
         link: usize,
@@ -23,15 +25,12 @@ pub enum Carrier {
 
 impl Carrier {
     /// Creates the carrier of a region. Without a recording objects are at their start.
-    ///
-    /// # Errors
-    /// If the oracle does not know what the region follows.
-    pub fn new(cell: &Cell, region: &CellRegion, recording: Option<&Recording>) -> Result<Self, String> {
-        Ok(match &region.follow {
+    pub fn new(cell: &Cell, region: &CellRegion, recording: Option<&Recording>) -> Self {
+        match &region.follow {
             None => Self::Nothing,
-            Some(Follow::Poses(_)) => {
-                let what = "follows a file of poses: the oracle knows belts, objects and robots only";
-                return Err(format!("region {} {what}", region.region.name));
+            Some(Follow::Poses(track)) => {
+                let rows = cell.frame_sources.pose_tracks[*track].rows();
+                Self::Poses(rows.iter().map(|(t_s, pose)| (*t_s, Frame::of(pose))).collect())
             }
             Some(Follow::Object(object)) => {
                 let object = &cell.objects[object.0];
@@ -43,7 +42,7 @@ impl Carrier {
             Some(Follow::Robot { robot, link, in_link }) => {
                 Self::Robot { robot: robot.0, link: link.0, in_link: Frame::of(in_link) }
             }
-        })
+        }
     }
 
     /// Returns its frame in the world; `frames` are the frames of all robots' links in the world.
@@ -52,6 +51,7 @@ impl Carrier {
             Self::Nothing => Frame::IDENTITY,
             Self::Belt(encoder) => Frame::shift(encoder.direction * travel_of(encoder, t_s).0),
             Self::Object(track) => track.at(t_s),
+            Self::Poses(rows) => frame_of(rows, t_s),
             Self::Robot { robot, link, in_link } => frames[*robot][*link].then(in_link),
         }
     }
@@ -63,6 +63,13 @@ impl Carrier {
             Self::Nothing => 0.0,
             Self::Belt(encoder) => (travel_of(encoder, to.0).0 - travel_of(encoder, from.0).0).abs(),
             Self::Object(track) => track.travel_m(from.0, to.0, radius_m),
+            Self::Poses(rows) => {
+                // Between two rows the motion is straight.
+                let within = rows.iter().map(|(t_s, _)| *t_s).filter(|t_s| from.0 < *t_s && *t_s < to.0);
+                let times: Vec<f64> = std::iter::once(from.0).chain(within).chain([to.0]).collect();
+                let frames: Vec<Frame> = times.iter().map(|t_s| frame_of(rows, *t_s)).collect();
+                frames.windows(2).map(|w| way_m(&w[0], &w[1], radius_m)).sum()
+            }
             Self::Robot { robot, link, in_link } => {
                 let lever_arms = arms[*robot].lever_arms(*link, in_link.at.length() + radius_m);
                 lever_arms.iter().zip(&from.1[*robot]).zip(&to.1[*robot]).map(|((l, a), b)| l * (b - a).abs()).sum()
@@ -88,6 +95,16 @@ impl Carrier {
     pub fn rounds(&self, t_s: f64) -> f64 {
         let Self::Belt(encoder) = self else { return 0.0 };
         travel_of(encoder, t_s).1
+    }
+}
+
+/// Returns the frame at a time: straight from row to row, by the shortest turn.
+fn frame_of(rows: &[(f64, Frame)], t_s: f64) -> Frame {
+    let next = rows.partition_point(|row| row.0 <= t_s);
+    match (next.checked_sub(1).map(|i| &rows[i]), rows.get(next)) {
+        (Some((t0, a)), Some((t1, b))) => a.moved_towards(b, (t_s - t0) / (t1 - t0)),
+        (Some((_, frame)), None) | (None, Some((_, frame))) => *frame,
+        (None, None) => Frame::IDENTITY,
     }
 }
 

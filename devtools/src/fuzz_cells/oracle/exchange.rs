@@ -80,7 +80,7 @@ fn spread_m(motion: &OracleMotion<'_>, pairs: &[SweptPair<'_>]) -> f64 {
 
 /// Marks the ticks during which the solid touches the region at some time until the next tick, while it is on the robot.
 fn mark_inside(pair: &SweptPair<'_>, during: &mut [bool]) {
-    let spans = pair.motion.tool_spans(pair.robot).into_iter();
+    let spans = pair.motion.hand_spans(pair.robot).into_iter();
     for (from, to) in spans.filter(|(from, _)| pair.is_there(*from)) {
         let mut k = from;
         while let Some((at, _)) = pair.first_touch(k, to) {
@@ -90,7 +90,8 @@ fn mark_inside(pair: &SweptPair<'_>, during: &mut [bool]) {
     }
 }
 
-/// Whether a robot has exchanged a tool into the region by tick `k`, and `check` says that this is not excluded.
+/// Whether a robot has exchanged a tool, or gripped an object, into the region by tick `k`, and `check` says that this is not
+/// excluded.
 fn is_exchanged_inside(
     motion: &OracleMotion<'_>,
     region: usize,
@@ -99,7 +100,7 @@ fn is_exchanged_inside(
     k: usize,
 ) -> bool {
     let into = |tick: &usize| *tick > 0 && *tick <= k && visit.2[*tick] && !visit.2[tick - 1];
-    !promises.exclude(region, visit.0) && motion.tools[visit.0].changes().any(|tick| into(&tick))
+    !promises.exclude(region, visit.0) && motion.hand_changes(visit.0).iter().any(into)
 }
 
 fn two_inside(

@@ -1,8 +1,11 @@
 //! Solids of a robot that a region can guard: the solids themselves, not the volumes that enclose them.
 
+use std::ops::Range;
+
 use elbowroom_cell::CellRobot;
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::Guards;
+use elbowroom_proximity::Shape;
 use elbowroom_robot::Collider;
 use elbowroom_spatial::{Pose, Vec3};
 
@@ -17,10 +20,20 @@ pub struct Guarded {
     in_link: Frame,
     solid: OracleSolid,
     part: GuardedPart,
-    /// Index of the named tool that it belongs to, which may be off its flange.
-    pub tool: Option<usize>,
+    /// When it is on the robot.
+    pub presence: Presence,
     /// Largest distance of its points from the link's origin, m.
     pub radius_m: f64,
+}
+
+/// When a solid is on its robot.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Presence {
+    Always,
+    /// While the named tool with this index is on its flange.
+    Tool(usize),
+    /// At these ticks, as an object in the hand.
+    Ticks(Range<usize>),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +67,7 @@ impl Guarded {
         for (index, t) in robot.payload.tools.iter().enumerate() {
             let solid = t.collider.iter().map(|c| Self::of_collider(t.link.0, c, GuardedPart::Tool));
             let parts = std::iter::once(tcp(t.link, &t.tcp_in_link)).chain(solid);
-            all.extend(parts.map(|part| Self { tool: Some(index), ..part }));
+            all.extend(parts.map(|part| Self { presence: Presence::Tool(index), ..part }));
         }
         all
     }
@@ -63,18 +76,31 @@ impl Guarded {
         Self::new(link, &collider.in_link, OracleSolid::eroded(&collider.shape, 0.0), part)
     }
 
+    /// Creates an object that is in the hand at these ticks.
+    pub fn held(flange: usize, in_flange: Frame, shape: &Shape, ticks: Range<usize>) -> Self {
+        let part = Self::at(flange, in_flange, OracleSolid::eroded(shape, 0.0), GuardedPart::Tool);
+        Self { presence: Presence::Ticks(ticks), ..part }
+    }
+
     fn new(link: usize, in_link: &Pose, solid: OracleSolid, part: GuardedPart) -> Self {
-        let in_link = Frame::of(in_link);
+        Self::at(link, Frame::of(in_link), solid, part)
+    }
+
+    fn at(link: usize, in_link: Frame, solid: OracleSolid, part: GuardedPart) -> Self {
         let radius_m = in_link.at.length() + solid.reach_from(Vec3::ZERO);
-        Self { link, in_link, solid, part, tool: None, radius_m }
+        Self { link, in_link, solid, part, presence: Presence::Always, radius_m }
     }
 
     /// Whether it is on the robot before anything moves.
     pub fn is_there_at_start(&self, robot: &CellRobot) -> bool {
-        self.tool.is_none_or(|tool| robot.payload.tools[tool].mounted)
+        match self.presence {
+            Presence::Always => true,
+            Presence::Tool(tool) => robot.payload.tools[tool].mounted,
+            Presence::Ticks(_) => false,
+        }
     }
 
-    /// Whether it is a tool or a load, and not the arm or a point.
+    /// Whether it is a tool, a load or a held object, and not the arm or a point.
     pub fn is_tool(&self) -> bool {
         self.part == GuardedPart::Tool
     }
@@ -90,6 +116,11 @@ impl Guarded {
     /// Returns its approximate place; `frames` are the frames of all links.
     pub fn center(&self, frames: &[Frame]) -> Vec3 {
         frames[self.link].then(&self.in_link).at
+    }
+
+    /// Returns a point of it; `frames` are the frames of all links.
+    pub fn any_point(&self, frames: &[Frame]) -> Vec3 {
+        frames[self.link].then(&self.in_link).point(self.solid.any_point())
     }
 
     /// Whether the straight line between two points comes nearer than `within` (m).

@@ -15,6 +15,7 @@ mod frame;
 mod grids;
 mod guarded;
 mod guided;
+mod held_parts;
 mod in_view;
 mod kept_axes;
 mod mechanisms;
@@ -27,6 +28,7 @@ mod planted_tests;
 mod presence;
 mod promises;
 pub mod readings;
+pub mod recorded;
 mod simplex;
 mod solid;
 mod sweep;
@@ -47,18 +49,10 @@ use elbowroom_sim::Recording;
 
 /// Checks a recording against the promises of `check` for its cell; `has_violation` is whether the run reported that
 /// something went wrong.
-///
-/// # Errors
-/// Names a region whose motion the oracle does not know.
-pub fn check(
-    cell: &Cell,
-    recording: &Recording,
-    promises: &Promises<'_>,
-    has_violation: bool,
-) -> Result<Findings, String> {
+pub fn check(cell: &Cell, recording: &Recording, promises: &Promises<'_>, has_violation: bool) -> Findings {
     let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
-    let guarded: Vec<Vec<Guarded>> = cell.robots.iter().map(Guarded::all).collect();
-    let motion = motion::OracleMotion::new(cell, recording, &arms)?;
+    let motion = motion::OracleMotion::new(cell, recording, &arms);
+    let guarded = guarded(cell, &motion);
     let mut findings = Findings::default();
     presence::entries(&motion, &guarded, promises, &mut findings);
     exchange::check(&motion, &guarded, promises, has_violation, &mut findings);
@@ -70,21 +64,29 @@ pub fn check(
     grids::check(cell, recording, &arms, &mut findings);
     mechanisms::check(cell, recording, &mut findings);
     while_inside::check(&motion, &guarded, &mut findings);
-    Ok(findings)
+    findings
+}
+
+/// Returns the solids of each robot that can count at some time of a run.
+fn guarded(cell: &Cell, motion: &motion::OracleMotion<'_>) -> Vec<Vec<Guarded>> {
+    let mut guarded: Vec<Vec<Guarded>> = cell.robots.iter().map(Guarded::all).collect();
+    for grip in &motion.grips {
+        guarded[grip.robot].push(grip.guarded(cell));
+    }
+    guarded
 }
 
 /// Returns the least distance (m) of a region at the start from the solids that it guards against, up to a metre; 0 inside.
 pub fn start_distance(cell: &Cell, region: usize) -> f64 {
     let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
     let frames: Vec<_> = arms.iter().enumerate().map(|(robot, arm)| arm.frames(start(cell, robot))).collect();
-    // A region that cannot be checked does not count as outside.
-    let Ok(place) = place::Place::new(cell, region, None) else { return 0.0 };
+    let place = place::Place::new(cell, region, None);
     let at = place.at(0.0, &frames);
     let one = |robot: &usize| {
         let counts = |g: &Guarded| g.counts_for(place.guards) && g.is_there_at_start(&cell.robots[*robot]);
         let guarded = Guarded::all(&cell.robots[*robot]).into_iter().filter(counts);
         let distance = |g: Guarded| {
-            let is_inside = place.contains(&at, g.center(&frames[*robot]));
+            let is_inside = place.contains(&at, g.any_point(&frames[*robot]));
             if is_inside { 0.0 } else { g.distance(&frames[*robot], &place.solid, &at, 1.0).lower }
         };
         guarded.map(distance).fold(1.0, f64::min)

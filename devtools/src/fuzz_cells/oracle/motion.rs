@@ -5,7 +5,8 @@ use elbowroom_sim::Recording;
 
 use super::arm::Arm;
 use super::frame::Frame;
-use super::guarded::Guarded;
+use super::guarded::{Guarded, Presence};
+use super::held_parts::{Grip, grips};
 use super::mounted::MountedTools;
 use super::place::Place;
 use super::track::is_steady;
@@ -20,17 +21,20 @@ pub struct OracleMotion<'a> {
     /// Joint values per tick and robot.
     pub q: Vec<Vec<Vec<f64>>>,
     /// Mounted tools per robot.
-    pub tools: Vec<MountedTools>,
+    tools: Vec<MountedTools>,
+    /// Objects in the hands of robots.
+    pub grips: Vec<Grip>,
 }
 
 impl<'a> OracleMotion<'a> {
-    pub fn new(cell: &'a Cell, recording: &'a Recording, arms: &'a [Arm]) -> Result<Self, String> {
+    pub fn new(cell: &'a Cell, recording: &'a Recording, arms: &'a [Arm]) -> Self {
         let ticks = recording.robots.iter().map(|r| r.samples.len()).min().unwrap_or(0);
         let at = |k: usize| recording.robots.iter().map(|r| r.samples[k].q.clone()).collect();
         let times = recording.robots.first().map_or(Vec::new(), |r| r.samples.iter().map(|s| s.t_s).collect());
-        let places = (0..cell.regions.len()).map(|r| Place::new(cell, r, Some(recording))).collect::<Result<_, _>>()?;
+        let places = (0..cell.regions.len()).map(|r| Place::new(cell, r, Some(recording))).collect();
         let tools = cell.robots.iter().map(|robot| MountedTools::new(robot, recording)).collect();
-        Ok(Self { cell, recording, arms, places, times, q: (0..ticks).map(at).collect(), tools })
+        let grips = grips(cell, recording, arms);
+        Self { cell, recording, arms, places, times, q: (0..ticks).map(at).collect(), tools, grips }
     }
 
     pub fn ticks(&self) -> usize {
@@ -43,18 +47,28 @@ impl<'a> OracleMotion<'a> {
         list.iter().rev().find(|(t_s, _)| *t_s <= self.times[k] + 1e-9).is_some_and(|(_, on)| *on)
     }
 
-    /// Returns the spans, as first tick and tick after the last, in which a robot has the same tools.
-    pub fn tool_spans(&self, robot: usize) -> Vec<(usize, usize)> {
-        let changes: Vec<usize> = self.tools[robot].changes().filter(|k| *k < self.ticks()).collect();
+    /// The ticks at which a robot exchanges a tool, grips an object or puts it down, in order and without the first tick.
+    pub fn hand_changes(&self, robot: usize) -> Vec<usize> {
+        let grips = self.grips.iter().filter(|g| g.robot == robot).flat_map(|g| [g.from, g.to]);
+        let in_time = |k: &usize| (1..self.ticks()).contains(k);
+        let mut changes: Vec<usize> = self.tools[robot].changes().chain(grips).filter(in_time).collect();
+        changes.sort_unstable();
+        changes.dedup();
+        changes
+    }
+
+    /// Returns the spans, as first tick and tick after the last, in which a robot has the same tools and objects.
+    pub fn hand_spans(&self, robot: usize) -> Vec<(usize, usize)> {
+        let changes = self.hand_changes(robot);
         let begins = std::iter::once(0).chain(changes.clone());
         begins.zip(changes.into_iter().chain([self.ticks()])).filter(|(from, to)| from < to).collect()
     }
 
     /// Returns the spans, as first tick and tick after the last, in which a region is active and a robot has the same
-    /// tools.
+    /// tools and objects.
     pub fn spans(&self, region: usize, robot: usize) -> Vec<(usize, usize)> {
         let mut spans = Vec::new();
-        let changes: Vec<usize> = self.tools[robot].changes().collect();
+        let changes = self.hand_changes(robot);
         let mut from = None;
         for k in 0..=self.ticks() {
             let is_active = k < self.ticks() && self.is_active(region, k);
@@ -68,9 +82,13 @@ impl<'a> OracleMotion<'a> {
         spans
     }
 
-    /// Whether a solid is on its robot at a tick: a tool may be off its flange.
+    /// Whether a solid is on its robot at a tick: a tool may be off its flange, an object is held for a while.
     pub fn has(&self, robot: usize, guarded: &Guarded, k: usize) -> bool {
-        guarded.tool.is_none_or(|tool| self.tools[robot].has(tool, k))
+        match &guarded.presence {
+            Presence::Always => true,
+            Presence::Tool(tool) => self.tools[robot].has(*tool, k),
+            Presence::Ticks(ticks) => ticks.contains(&k),
+        }
     }
 
     /// Returns the frame of a region at a tick.

@@ -30,23 +30,20 @@ pub struct Place {
 
 impl Place {
     /// Creates the place of a region. Without a recording objects are at their start.
-    ///
-    /// # Errors
-    /// If the oracle does not know what the region follows.
-    pub fn new(cell: &Cell, region: usize, recording: Option<&Recording>) -> Result<Self, String> {
+    pub fn new(cell: &Cell, region: usize, recording: Option<&Recording>) -> Self {
         let r = &cell.regions[region];
         let at = Frame::of(&r.region.anchor).then(&Frame::of(&r.region.shape_in_anchor));
         let solid = OracleSolid::eroded(&r.region.shape, TOLERANCE_M);
-        Ok(Self {
+        Self {
             radius_m: at.at.length() + solid.reach_from(Vec3::ZERO),
             solid,
             guards: r.region.guards,
             robots: r.robots.iter().map(|robot| robot.0).collect(),
             kind: r.region.kind,
             at,
-            carrier: Carrier::new(cell, r, recording)?,
+            carrier: Carrier::new(cell, r, recording),
             shape: r.region.shape.clone(),
-        })
+        }
     }
 
     /// Returns the distance (m) from another region if both are fixed; 0 if one moves.

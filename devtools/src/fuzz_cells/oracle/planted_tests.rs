@@ -1,10 +1,14 @@
-//! Tests of the oracle: planted readings beyond limits, and mechanisms that are slowed down.
+//! Tests of the oracle by planted violations: readings beyond limits, slowed mechanisms, speed zones, held parts, recordings.
 
 use elbowroom_cell::Cell;
 use elbowroom_robot::RobotId;
 use elbowroom_sim::{InputFault, InputFaultKind, Recording, RunOptions, simulate};
 
-use super::{Arm, Finding, Findings, Guarded, mechanisms, motion::OracleMotion, readings, while_inside};
+use super::{
+    Arm, Finding, Findings, Guarded, Promises, check, mechanisms, motion::OracleMotion, readings, recorded,
+    while_inside,
+};
+use crate::fuzz_cells::spec::{RecordingLayout, RecordingSpec};
 
 const CELL: &str = r#"
 version = 1
@@ -98,7 +102,7 @@ fn a_speed_zone_that_does_not_slow_and_an_output_that_is_off_are_found() {
         let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
         let guarded: Vec<Vec<Guarded>> = cell.robots.iter().map(Guarded::all).collect();
         let mut findings = Findings::default();
-        while_inside::check(&OracleMotion::new(&cell, recording, &arms).unwrap(), &guarded, &mut findings);
+        while_inside::check(&OracleMotion::new(&cell, recording, &arms), &guarded, &mut findings);
         findings.list
     };
     let right = simulate(&cell, &RunOptions::default()).unwrap().recording;
@@ -115,4 +119,61 @@ fn a_speed_zone_that_does_not_slow_and_an_output_that_is_off_are_found() {
     let middle = late.robots[0].samples.iter().position(|sample| sample.q[0] > 1.0).unwrap();
     late.robots[0].samples[middle].speed_override = 0.4;
     assert_eq!(found(&late).len(), 1);
+}
+
+/// A ball on a rail that grips a long part; only the part reaches the plate above the rail.
+const PART: &str = r#"
+version = 1
+units = { length = "m", angle = "rad" }
+monitor = { stopping_distance = true }
+[robot.a]
+dh = [{ kind = "prismatic", min = -1, max = 2, speed = 1 }]
+links = [{ sphere = { radius = 0.02 } }]
+[object.part]
+shape = "box"
+at = [0, 0.3, 0]
+size = [0.02, 0.6, 0.02]
+[region.plate]
+shape = "box"
+from = [-0.1, 0.4, 1]
+to = [0.1, 0.6, 1.1]
+[program.a]
+steps = [{ grip = "part" }, { move = "joint", to = [0.5] }, { release = "part" }, { move = "joint", to = [2] }]
+"#;
+
+#[test]
+fn a_part_that_is_carried_into_a_region_is_found_and_one_that_was_put_down_is_not() {
+    let found = |text: &str, monitored: bool| {
+        let cell = Cell::parse("test.toml", text).unwrap();
+        let outcome = simulate(&cell, &RunOptions { apply_override: monitored, ..RunOptions::default() }).unwrap();
+        check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).list
+    };
+    assert_eq!(found(PART, false), []);
+    let carried = PART.replace("[0.5]", "[1.05]");
+    assert_eq!(found(&carried, true), []);
+    let found = found(&carried, false);
+    let [Finding::Entry { robot: 0, region: 0, t_s, .. }] = found[..] else { panic!("{found:?}") };
+    // The part's end reaches the plate at 0.99 m.
+    assert!((0.99..1.5).contains(&t_s), "{t_s}");
+}
+
+#[test]
+fn a_robot_that_leaves_its_recording_or_is_ahead_of_it_is_found() {
+    let cell = Cell::parse("test.toml", CELL).unwrap();
+    let rows = [(0.0, vec![0.0]), (0.2, vec![0.1]), (0.4, vec![-0.1])];
+    let layout = RecordingLayout { offset_s: 0.1, ..RecordingLayout::default() };
+    let written = RecordingSpec { rows: rows.to_vec(), layout: Some(layout) };
+    let found = |place: &dyn Fn(f64) -> f64| {
+        let mut recording = simulate(&cell, &RunOptions::default()).unwrap().recording;
+        recording.robots[0].samples.iter_mut().for_each(|sample| sample.q = vec![place(sample.t_s)]);
+        recorded::first_off(&written, 0, &recording)
+    };
+    let at = |t_s: f64| if t_s < 0.2 { 0.5 * t_s.max(0.0) } else { (0.3 - t_s).max(-0.1) };
+    assert_eq!(found(&|t_s| at(t_s - 0.1)), None);
+    // Later and slower is right: the monitor may hold it.
+    assert_eq!(found(&|t_s| at(0.7 * (t_s - 0.2))), None);
+    assert!(matches!(found(&at), Some(Finding::OffRecording { robot: 0, ahead_s: Some(_), .. })));
+    assert!(matches!(found(&|t_s| at(t_s - 0.09)), Some(Finding::OffRecording { ahead_s: Some(_), .. })));
+    let leaves = |t_s: f64| at(t_s - 0.1) - if t_s > 0.45 { 0.2 } else { 0.0 };
+    assert!(matches!(found(&leaves), Some(Finding::OffRecording { ahead_s: None, .. })));
 }

@@ -12,8 +12,8 @@ use super::sweep::{SweptPair, Touch, first_touch};
 const LATER_TICKS: usize = 8;
 
 /// Finds entries into forbidden regions. If entry is excluded, any entry counts. Otherwise, with the stopping distance,
-/// entries count of robots that were outside when the region became active; if it was switched on, or a tool was
-/// exchanged, beside a moving robot, the robot must have been at rest outside since.
+/// entries count of robots that were outside when the region became active; if it was switched on beside a moving robot,
+/// the robot must have been at rest outside since.
 pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], promises: &Promises<'_>, findings: &mut Findings) {
     for (region, place) in motion.places.iter().enumerate() {
         if !matches!(place.kind, RegionKind::Forbidden) {
@@ -79,9 +79,10 @@ impl<'a> Watch<'a> {
 
     /// Returns the first touch after the robot was at rest and outside.
     fn responsible(&self, begin: usize, end: usize) -> Option<Touch<'_, 'a>> {
-        // The start counts as rest: nothing has moved before it.
+        // The start counts as rest: nothing has moved before it. So does a step that changes what is in the hand.
         let moves = |k: usize| self.motion.moves(self.robot, k);
-        let at_rest = |k: &usize| *k == 0 || (!moves(*k) && !moves(k - 1));
+        let steps = self.motion.hand_changes(self.robot);
+        let at_rest = |k: &usize| *k == 0 || (!moves(*k) && !moves(k - 1)) || steps.contains(k);
         let first = (begin..end).find(at_rest)?;
         let mut rests = (first..end).step_by(LATER_TICKS).filter(at_rest);
         // A robot at rest cannot leave a region that does not move.

@@ -100,6 +100,17 @@ impl OracleSolid {
         }
     }
 
+    /// A point of it: the origin of a mesh may be outside of it.
+    pub fn any_point(&self) -> Vec3 {
+        match self {
+            Self::Pieces(tree) => match &tree.pieces[0].core {
+                Core::Points(points) => points[0],
+                Core::Box(_) | Core::Cylinder(..) => Vec3::ZERO,
+            },
+            Self::Below(height) => Vec3::Z * *height,
+        }
+    }
+
     /// Largest distance of its points from a point, m; infinite if it is unbounded.
     pub fn reach_from(&self, point: Vec3) -> f64 {
         let Self::Pieces(tree) = self else { return f64::INFINITY };

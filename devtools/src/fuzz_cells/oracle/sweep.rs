@@ -137,12 +137,12 @@ impl<'a> SweptPair<'a> {
         self.distance(k, 0.0).upper <= 0.0 || self.is_surrounded(k)
     }
 
-    /// Whether its centre lies in the region at a tick, also where it is away from the surface of a mesh.
+    /// Whether a point of it lies in the region at a tick, also where it is away from the surface of a mesh.
     pub fn is_surrounded(&self, k: usize) -> bool {
         let frames = self.motion.frames(&self.motion.q[k]);
         let place = &self.motion.places[self.region];
         let at = place.at(self.motion.times[k], &frames);
-        place.contains(&at, self.guarded.center(&frames[self.robot]))
+        place.contains(&at, self.guarded.any_point(&frames[self.robot]))
     }
 
     /// Finds the first touch from tick `from` until before tick `to`: the tick before it, and the fraction of the way

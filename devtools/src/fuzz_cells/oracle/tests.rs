@@ -36,7 +36,7 @@ fn run(text: &str, monitored: bool) -> (Cell, RunOutcome) {
 
 fn findings(text: &str, monitored: bool) -> Vec<Finding> {
     let (cell, outcome) = run(text, monitored);
-    check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).unwrap().list
+    check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).list
 }
 
 fn vector(random: &mut Random, most: f64) -> Vec3 {
@@ -130,7 +130,7 @@ fn a_plate_that_is_jumped_between_two_samples_is_entered() {
     let (cell, outcome) = run(&text, false);
     let inside = |x: f64| x.abs() < 0.0006;
     assert!(!outcome.recording.robots[0].samples.iter().any(|s| inside(s.q[0])), "a sample fell into the plate");
-    let found = check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap().list;
+    let found = check(&cell, &outcome.recording, &Promises::none(&cell), true).list;
     assert!(matches!(found.as_slice(), [Finding::Entry { .. }]), "{found:?}");
 }
 
@@ -149,7 +149,7 @@ fn a_region_that_runs_into_a_robot_that_stands_was_not_entered() {
     let text = text.replace("steps = [{ move = \"joint\", to = [0] }]", "steps = [{ wait = 3 }]");
     let (cell, outcome) = run(&text, true);
     assert!(outcome.recording.regions[0].entered, "it never came there");
-    assert_eq!(check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap().list, []);
+    assert_eq!(check(&cell, &outcome.recording, &Promises::none(&cell), true).list, []);
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn two_that_drive_into_a_region_that_moves_are_seen_and_two_that_it_runs_over_ar
     // Neither robot moves.
     let still = |name: &str, y: f64| rail(name, y, 0.0, 0.0).replace("{ move", "{ wait = 6 }, { move");
     let (cell, outcome) = run(&(still("a", 0.0) + &still("b", 0.5) + &carried_plate(0.6)), false);
-    let findings = check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).unwrap();
+    let findings = check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation());
     assert_eq!((findings.list.len(), findings.unforeseen_entries), (0, 1));
 }
 
@@ -189,7 +189,7 @@ fn a_deadlock_must_be_reported() {
     let (cell, mut outcome) = run(&text, true);
     assert!(outcome.recording.robots.iter().all(|r| !r.finished), "no deadlock");
     let reported = |outcome: &RunOutcome, has_violation| {
-        let findings = check(&cell, &outcome.recording, &Promises::none(&cell), has_violation).unwrap();
+        let findings = check(&cell, &outcome.recording, &Promises::none(&cell), has_violation);
         assert_eq!(findings.deadlocks, 1);
         findings.list.is_empty()
     };
@@ -206,7 +206,7 @@ fn who_stops_harder_than_it_can_is_seen() {
     let fast = samples.iter().position(|s| s.q[0] > -1.0).unwrap();
     let there = samples[fast].q.clone();
     samples[fast..].iter_mut().for_each(|s| s.q.clone_from(&there));
-    let found = check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap().list;
+    let found = check(&cell, &outcome.recording, &Promises::none(&cell), true).list;
     assert!(matches!(found.as_slice(), [Finding::TooHard { robot: 0, joint: 0, .. }]), "{found:?}");
 }
 
@@ -230,7 +230,7 @@ fn whoever_drives_into_a_region_that_turns_has_entered_and_whoever_stands_has_no
     let stands = turning(1.5, "{ wait = 8 }").replace("start = [-2.5]", "start = [0]");
     let (cell, outcome) = run(&stands, true);
     assert!(outcome.recording.regions[0].entered, "it never came there");
-    assert_eq!(check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap().list, []);
+    assert_eq!(check(&cell, &outcome.recording, &Promises::none(&cell), true).list, []);
 }
 
 #[test]
@@ -249,7 +249,7 @@ fn a_region_on_a_hand_that_turns_is_entered_too() {
 fn what_check_excludes_must_not_happen_whoever_moves() {
     let text = rail("a", 0.0, -2.0, 2.0) + &plate(0.0, 0.5, "forbidden");
     let (cell, outcome) = run(&text, false);
-    let found = check(&cell, &outcome.recording, &Promises::new(&cell), true).unwrap().list;
+    let found = check(&cell, &outcome.recording, &Promises::new(&cell), true).list;
     assert!(matches!(found.as_slice(), [Finding::Excluded { robot: 0, region: 0, .. }]), "{found:?}");
 }
 
@@ -268,13 +268,13 @@ fn exchange_of_tools(kind: &str) -> String {
 fn a_tool_that_is_not_mounted_is_not_inside_and_one_that_is_exchanged_is() {
     let (cell, outcome) = run(&exchange_of_tools("forbidden"), true);
     let promised = || Promises::promised(&cell, vec![(0, 0)]);
-    let found = check(&cell, &outcome.recording, &promised(), true).unwrap().list;
+    let found = check(&cell, &outcome.recording, &promised(), true).list;
     let [Finding::Excluded { t_s, .. }] = found.as_slice() else { panic!("{found:?}") };
     let exchanged = outcome.recording.events.iter().find(|e| e.region == "torch").unwrap().t_s;
     assert_eq!(*t_s, exchanged);
     let short = exchange_of_tools("forbidden").replace("{ tool = \"torch\" }, ", "");
     let (cell, outcome) = run(&short, true);
-    assert_eq!(check(&cell, &outcome.recording, &Promises::promised(&cell, vec![(0, 0)]), true).unwrap().list, []);
+    assert_eq!(check(&cell, &outcome.recording, &Promises::promised(&cell, vec![(0, 0)]), true).list, []);
 }
 
 #[test]
@@ -282,10 +282,10 @@ fn a_tool_that_is_exchanged_into_an_occupied_region_is_seen() {
     let other = rail("b", 0.5, 2.0, 0.0).replace("to = [0] }", "to = [0] }, { wait = 4 }");
     let (cell, outcome) = run(&(exchange_of_tools("exchange") + &other), true);
     let promised = Promises::promised(&cell, vec![(0, 0), (0, 1)]);
-    let found = check(&cell, &outcome.recording, &promised, true).unwrap().list;
+    let found = check(&cell, &outcome.recording, &promised, true).list;
     assert!(matches!(found.as_slice(), [Finding::TwoInside { region: 0, robots: [0, 1], .. }]), "{found:?}");
     // `check` does not exclude it, so it can be foreseen.
-    let findings = check(&cell, &outcome.recording, &Promises::none(&cell), true).unwrap();
+    let findings = check(&cell, &outcome.recording, &Promises::none(&cell), true);
     assert_eq!((findings.list.len(), findings.unforeseen_entries), (0, 1));
 }
 
@@ -293,7 +293,7 @@ fn a_tool_that_is_exchanged_into_an_occupied_region_is_seen() {
 fn objects_are_where_their_motion_says_between_ticks_too() {
     let text = turning(1.3, "{ wait = 2 }");
     let (cell, outcome) = run(&text, true);
-    let place = super::place::Place::new(&cell, 0, Some(&outcome.recording)).unwrap();
+    let place = super::place::Place::new(&cell, 0, Some(&outcome.recording));
     for i in 0..1000 {
         let t_s = 0.00173 * f64::from(i);
         let center = place.at(t_s, &[]).at;
@@ -334,7 +334,7 @@ fn a_guided_tool_that_is_too_near_and_energy_that_is_made_are_found() {
     let force = "[force.soft]\nbetween = [\"r0/tool\", \"block\"]\nlaw = \"repulsive\"\nrange = 0.02\n";
     let (cell, mut outcome) = guided(force, &folder);
     std::fs::remove_dir_all(&folder).unwrap();
-    let findings = |outcome: &RunOutcome| check(&cell, &outcome.recording, &Promises::none(&cell), false).unwrap().list;
+    let findings = |outcome: &RunOutcome| check(&cell, &outcome.recording, &Promises::none(&cell), false).list;
     assert_eq!(findings(&outcome), []);
     let track = &mut outcome.recording.robots[0];
     let last = track.guidance.as_mut().unwrap().samples.last_mut().unwrap();
@@ -411,9 +411,8 @@ fn a_wrong_number_of_a_grid_is_found_and_a_right_one_is_not() {
     let grids = "[grid.space]\nfrom = [-0.31, -1, -1]\nto = [0.83, 1, 1]\ncells = [5, 2, 1]\noutput = 3\n\
                  [grid.joint]\njoints = [\"joint_1\"]\nfrom = [0.1]\nto = [0.6]\ncells = [4]\noutput = 40\nhysteresis = 0.03\n";
     let (cell, outcome) = run(&format!("{}{grids}", rail("a", 0.25, -0.5, 1.0)), true);
-    let check = |outcome: &RunOutcome| {
-        check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).unwrap().list
-    };
+    let check =
+        |outcome: &RunOutcome| check(&cell, &outcome.recording, &Promises::none(&cell), outcome.has_violation()).list;
     assert_eq!(check(&outcome), []);
     let samples = &outcome.recording.robots[0].samples;
     let number = |i: usize, at: u8| samples[i].outputs >> at & 7;

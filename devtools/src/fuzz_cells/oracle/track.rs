@@ -30,11 +30,15 @@ impl Track {
 
     /// Upper bound of the motion (m) of a point within `radius_m` of its origin from one time to another within a tick.
     pub fn travel_m(&self, from_s: f64, to_s: f64, radius_m: f64) -> f64 {
-        let (from, to) = (self.at(from_s), self.at(to_s));
-        let turn = from.turn_to(&to).length();
-        // A body that does not turn may be unbounded.
-        from.at.distance(to.at) + if turn > 0.0 { turn * radius_m } else { 0.0 }
+        way_m(&self.at(from_s), &self.at(to_s), radius_m)
     }
+}
+
+/// Upper bound of the motion (m) of a point within `radius_m` of the origin of a frame that moves straight to another.
+pub fn way_m(from: &Frame, to: &Frame, radius_m: f64) -> f64 {
+    let turn = from.turn_to(to).length();
+    // A body that does not turn may be unbounded.
+    from.at.distance(to.at) + if turn > 0.0 { turn * radius_m } else { 0.0 }
 }
 
 /// Whether the motion at these ticks can be foreseen: the body turns at a constant rate, and its velocity is constant,

@@ -1,6 +1,6 @@
 //! Check of what holds while a robot is in a region, or near it: the override of speed zones, and the outputs.
 
-use elbowroom_monitor::RegionKind;
+use elbowroom_monitor::{OverrideReason, RegionKind};
 
 use super::findings::{Finding, Findings, TOLERANCE_M};
 use super::guarded::Guarded;
@@ -29,7 +29,8 @@ pub fn check(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], findings: &mut
         }
         for &robot in &place.robots {
             let counted = guarded[robot].iter().filter(|g| g.counts_for(place.guards));
-            let pairs: Vec<SweptPair<'_>> = counted.map(|g| SweptPair::new(motion, g, robot, region)).collect();
+            let pairs = counted.map(|g| SweptPair::new(motion, g, robot, region));
+            let pairs: Vec<SweptPair<'_>> = pairs.filter(SweptPair::is_moved).collect();
             let inside = Watched { motion, pairs: &pairs, robot, region };
             if let Some(most) = slow_to {
                 inside.in_the_zone(most, findings);
@@ -99,7 +100,9 @@ impl Watched<'_> {
         let Some(output) = output else { return };
         let Self { robot, region, .. } = *self;
         let samples = &self.motion.recording.robots[robot].samples;
-        let is_off = |k: &usize| samples[*k].outputs >> output & 1 == 0;
+        // While the input is faulty, such as in a recording that is faster than its robot, outputs stay as they are.
+        let is_faulty = |k: &usize| matches!(samples[*k].reason, OverrideReason::Fault(_));
+        let is_off = |k: &usize| samples[*k].outputs >> output & 1 == 0 && !is_faulty(k);
         if let Some(k) = self.ticks((within_m - MARGIN_M).max(0.0)).find(is_off) {
             findings.list.push(Finding::OutputOff { robot, region, t_s: samples[k].t_s, output });
         }

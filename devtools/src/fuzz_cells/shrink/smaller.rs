@@ -69,7 +69,7 @@ pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
 fn without_object(list: &mut Candidates<'_>, i: usize, object: &ObjectSpec) {
     let follows = |f: &Option<FollowSpec>| matches!(f, Some(FollowSpec::Object(name)) if *name == object.name);
     let is_needed = list.spec.regions.iter().any(|r| follows(&r.follow))
-        || list.spec.robots.iter().any(|r| r.evades.contains(&object.name))
+        || list.spec.robots.iter().any(|r| r.evades.contains(&object.name) || grips(&r.program, &object.name))
         || list
             .spec
             .guidance
@@ -96,6 +96,11 @@ fn without_object(list: &mut Candidates<'_>, i: usize, object: &ObjectSpec) {
     if !object.shape.contains("\"sphere\"") {
         list.push(|c| c.objects[i].shape = "shape = \"sphere\"\nradius = 0.01\n".into());
     }
+}
+
+/// Whether a program grips or puts down an object.
+fn grips(program: &ProgramSpec, object: &str) -> bool {
+    program.steps.iter().any(|s| matches!(s, StepSpec::Grip(name) | StepSpec::Release(name) if name == object))
 }
 
 fn shorter_program(list: &mut Candidates<'_>, r: usize, program: &ProgramSpec) {

@@ -1,8 +1,8 @@
 //! An operator who guides the first robot, and tables of fixtures and forces.
 
 use std::fmt::Write as _;
-use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::path::Path;
+
+use super::files::CellFile;
 
 /// Guidance of the first robot.
 #[derive(Debug, Clone, Default)]
@@ -19,7 +19,7 @@ pub struct GuidanceSpec {
 }
 
 /// A row of the stream: pose of the hand in the world, metres.
-#[derive(Debug, Clone, Copy, Hash)]
+#[derive(Debug, Clone, Copy)]
 pub struct HandRow {
     /// Milliseconds.
     pub t_ms: u32,
@@ -35,7 +35,7 @@ pub struct HandRow {
 
 impl GuidanceSpec {
     pub(super) fn write(&self, t: &mut String) {
-        let file = self.file_name();
+        let file = self.file().name;
         let _ = if self.virtual_robot.is_empty() {
             writeln!(t, "[operator.hand]\nrobot = \"r0\"\nstream = \"{file}\"\n{}", self.operator)
         } else {
@@ -46,14 +46,8 @@ impl GuidanceSpec {
         }
     }
 
-    /// Name of the stream's file, made from its contents, so that cells do not share it.
-    pub fn file_name(&self) -> String {
-        let mut hasher = DefaultHasher::new();
-        (&self.rows, self.switches).hash(&mut hasher);
-        format!("hand-{:016x}.csv", hasher.finish())
-    }
-
-    pub(super) fn write_file(&self, folder: &Path) -> std::io::Result<()> {
+    /// The file of the stream.
+    pub(super) fn file(&self) -> CellFile {
         let fixture = if self.switches { ",fixture.shield" } else { "" };
         let mut text = format!("t_s,x,y,z,qx,qy,qz,qw,enable,clutch{fixture}\n");
         for row in &self.rows {
@@ -67,6 +61,6 @@ impl GuidanceSpec {
                 (true, false) => ",0\n",
             };
         }
-        std::fs::write(folder.join(self.file_name()), text)
+        CellFile::csv("hand", text)
     }
 }

@@ -1,6 +1,7 @@
 //! Cell in the form of the fuzzer: simple enough to be shrunk, and written as a cell file.
 
 mod comments;
+mod files;
 mod grid;
 mod guidance;
 mod object;
@@ -16,11 +17,12 @@ use elbowroom_cell::Cell;
 use elbowroom_sim::InputFault;
 
 pub use comments::{read_faults, read_repeat};
+use files::CellFile;
 pub use grid::GridSpec;
 pub use guidance::{GuidanceSpec, HandRow};
 pub use object::{MotionSpec, ObjectSpec};
-pub use recording::RecordingSpec;
-pub use region::{BeltSpec, FollowSpec, RegionSpec};
+pub use recording::{RecordingLayout, RecordingSpec};
+pub use region::{BeltSpec, BeltTravel, FollowSpec, PoseRow, RegionSpec};
 pub use robot::{DhRow, HandSpec, KeepSpec, Model, ProgramSpec, RobotSpec, SolidSpec, StepSpec, ToolSpec};
 pub use text::{Vector, list};
 
@@ -92,22 +94,22 @@ impl CellSpec {
     /// # Errors
     /// The error of the cell file.
     pub fn parse(&self, folder: &Path) -> Result<Cell, String> {
-        self.write_recordings(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+        self.write_files(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
         let cell = Cell::parse(folder.join("fuzz.toml"), &self.to_toml()).map_err(|e| e.to_string());
         // The cell has read all of its files.
-        let streams = self.guidance.iter().map(GuidanceSpec::file_name);
-        let files = self.recordings().map(RecordingSpec::file_name).chain(streams);
-        files.for_each(|name| drop(std::fs::remove_file(folder.join(name))));
+        self.files().for_each(|file| drop(std::fs::remove_file(folder.join(file.name))));
         cell
     }
 
-    /// Writes the recordings that the cell file names into its folder.
-    pub fn write_recordings(&self, folder: &Path) -> std::io::Result<()> {
-        self.guidance.iter().try_for_each(|guidance| guidance.write_file(folder))?;
-        self.recordings().try_for_each(|recording| recording.write_file(folder))
+    /// Writes the files that the cell file names into its folder.
+    pub fn write_files(&self, folder: &Path) -> std::io::Result<()> {
+        self.files().try_for_each(|file| std::fs::write(folder.join(file.name), file.text))
     }
 
-    fn recordings(&self) -> impl Iterator<Item = &RecordingSpec> {
-        self.robots.iter().filter_map(|r| r.program.recording.as_ref())
+    fn files(&self) -> impl Iterator<Item = CellFile> {
+        let recordings = self.robots.iter().filter_map(|r| r.program.recording.as_ref()).map(RecordingSpec::file);
+        let streams = self.guidance.iter().map(GuidanceSpec::file);
+        let belts = self.belts.iter().filter_map(BeltSpec::file);
+        recordings.chain(streams).chain(belts).chain(self.regions.iter().filter_map(RegionSpec::file))
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::text::{Vector, list};
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct ObjectSpec {
     pub name: String,
     /// Lines of its shape.
@@ -12,6 +12,8 @@ pub struct ObjectSpec {
     pub at: Vector,
     pub rpy: Vector,
     pub motion: Option<MotionSpec>,
+    /// The belt that it is on.
+    pub belt: Option<String>,
 }
 
 /// The table `motion` of an object.
@@ -32,6 +34,9 @@ impl ObjectSpec {
         let _ = writeln!(t, "at = {}\nrpy = {}", list(&self.at), list(&self.rpy));
         if let Some(motion) = &self.motion {
             motion.write(t);
+        }
+        if let Some(belt) = &self.belt {
+            let _ = writeln!(t, "follow = {{ encoder = \"{belt}\" }}");
         }
         t.push('\n');
     }

@@ -2,14 +2,26 @@
 
 use std::fmt::Write as _;
 
+use super::files::CellFile;
 use super::text::{Vector, list};
 
 #[derive(Debug, Clone)]
 pub struct BeltSpec {
     pub name: String,
     pub direction: Vector,
-    pub speed: f64,
-    pub start: f64,
+    pub travel: BeltTravel,
+    /// Travel after which it begins again at 0.
+    pub wrap: Option<f64>,
+}
+
+#[derive(Debug, Clone)]
+pub enum BeltTravel {
+    Constant {
+        speed: f64,
+        start: f64,
+    },
+    /// Rows of time and travel.
+    Table(Vec<(f64, f64)>),
 }
 
 #[derive(Debug, Clone)]
@@ -32,14 +44,69 @@ pub struct RegionSpec {
 pub enum FollowSpec {
     Belt(String),
     Object(String),
-    Robot { robot: usize, frame: &'static str },
+    Robot {
+        robot: usize,
+        frame: &'static str,
+    },
+    /// Rows of a file of poses.
+    Poses {
+        rows: Vec<PoseRow>,
+        in_quaternions: bool,
+    },
+}
+
+/// A pose at a time.
+#[derive(Debug, Clone, Copy)]
+pub struct PoseRow {
+    pub t_s: f64,
+    pub at: Vector,
+    pub rpy: Vector,
 }
 
 impl BeltSpec {
     pub(super) fn write(&self, t: &mut String) {
-        let Self { name, direction, speed, start } = self;
-        let _ = writeln!(t, "[encoder.{name}]\ndirection = {}\nspeed = {speed}\nstart = {start}\n", list(direction));
+        let Self { name, direction, travel, wrap } = self;
+        let _ = writeln!(t, "[encoder.{name}]\ndirection = {}", list(direction));
+        let _ = match travel {
+            BeltTravel::Constant { speed, start } => writeln!(t, "speed = {speed}\nstart = {start}"),
+            BeltTravel::Table(rows) => writeln!(t, "file = \"{}\"", table_file(rows).name),
+        };
+        if let Some(wrap) = wrap {
+            let _ = writeln!(t, "wrap = {wrap}");
+        }
+        t.push('\n');
     }
+
+    pub(super) fn file(&self) -> Option<CellFile> {
+        match &self.travel {
+            BeltTravel::Constant { .. } => None,
+            BeltTravel::Table(rows) => Some(table_file(rows)),
+        }
+    }
+}
+
+fn table_file(rows: &[(f64, f64)]) -> CellFile {
+    let mut text = String::from("t_s,travel_m\n");
+    for (t_s, travel_m) in rows {
+        let _ = writeln!(text, "{t_s},{travel_m}");
+    }
+    CellFile::csv("belt", text)
+}
+
+fn poses_file(rows: &[PoseRow], in_quaternions: bool) -> CellFile {
+    let mut text = String::from(if in_quaternions { "t_s,x,y,z,qx,qy,qz,qw\n" } else { "t_s,x,y,z,roll,pitch,yaw\n" });
+    for PoseRow { t_s, at: [x, y, z], rpy } in rows {
+        let turn = if in_quaternions { quaternion(*rpy).to_vec() } else { rpy.to_vec() };
+        let turn: Vec<String> = turn.iter().map(f64::to_string).collect();
+        let _ = writeln!(text, "{t_s},{x},{y},{z},{}", turn.join(","));
+    }
+    CellFile::csv("poses", text)
+}
+
+/// The quaternion x, y, z, w of rotations about x, then y, then z.
+fn quaternion(rpy: Vector) -> [f64; 4] {
+    let [(sr, cr), (sp, cp), (sy, cy)] = rpy.map(|angle| (angle / 2.0).sin_cos());
+    [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy]
 }
 
 impl RegionSpec {
@@ -62,8 +129,18 @@ impl RegionSpec {
                 FollowSpec::Robot { robot, frame } => {
                     writeln!(t, "follow = {{ robot = \"r{robot}\", frame = \"{frame}\" }}")
                 }
+                FollowSpec::Poses { rows, in_quaternions } => {
+                    writeln!(t, "follow = {{ poses = \"{}\" }}", poses_file(rows, *in_quaternions).name)
+                }
             };
         }
         t.push('\n');
+    }
+
+    pub(super) fn file(&self) -> Option<CellFile> {
+        match &self.follow {
+            Some(FollowSpec::Poses { rows, in_quaternions }) => Some(poses_file(rows, *in_quaternions)),
+            _ => None,
+        }
     }
 }

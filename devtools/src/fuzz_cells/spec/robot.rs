@@ -101,6 +101,8 @@ pub enum StepSpec {
     Override(f64),
     Switch { region: String, active: bool },
     Tool(String),
+    Grip(String),
+    Release(String),
 }
 
 impl RobotSpec {
@@ -182,7 +184,7 @@ impl ProgramSpec {
             let _ = writeln!(t, "repeat = {}", self.repeat);
         }
         if let Some(recording) = &self.recording {
-            let _ = writeln!(t, "trajectory = \"{}\"\n", recording.file_name());
+            let _ = writeln!(t, "trajectory = {}\n", recording.value());
             return;
         }
         t.push_str("steps = [\n");
@@ -220,6 +222,14 @@ impl SolidSpec {
 }
 
 impl StepSpec {
+    /// The joint values at the end of a move.
+    pub fn target(&self) -> Option<&Vec<f64>> {
+        match self {
+            Self::Joint { to, .. } | Self::Linear { to, .. } | Self::Planned { to, .. } => Some(to),
+            _ => None,
+        }
+    }
+
     fn write(&self, t: &mut String) {
         let _ = match self {
             Self::Joint { to, percent } => {
@@ -238,6 +248,8 @@ impl StepSpec {
             Self::Wait(s) => writeln!(t, "  {{ wait = {s} }},"),
             Self::Override(percent) => writeln!(t, "  {{ override = {percent} }},"),
             Self::Tool(name) => writeln!(t, "  {{ tool = \"{name}\" }},"),
+            Self::Grip(name) => writeln!(t, "  {{ grip = \"{name}\" }},"),
+            Self::Release(name) => writeln!(t, "  {{ release = \"{name}\" }},"),
             Self::Switch { region, active } => writeln!(t, "  {{ region = \"{region}\", active = {active} }},"),
         };
     }
