@@ -133,13 +133,25 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     let (offline, again, compiler) = (options.offline, options.again, Compiler::find(root));
     let context = Context { root, offline, again, compiler, references, beside, ended };
     let started = Instant::now();
-    let mut outcomes: Vec<Outcome> = chosen.into_iter().map(|step| timed(step, &context)).collect();
+    let mut outcomes = quick_steps(&mut chosen, &context);
+    outcomes.extend(chosen.into_iter().map(|step| timed(step, &context)));
     // If the tests do not compile, nothing has run beside them.
     run_beside(&context);
     outcomes.append(&mut locked(&context.ended));
     print_table(&outcomes, started.elapsed());
     let failed: Vec<&str> = outcomes.iter().filter(|outcome| !outcome.ok).map(|outcome| outcome.name).collect();
     if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
+}
+
+/// Runs the chosen steps that come before `tests`, each on a processor.
+fn quick_steps(chosen: &mut Vec<&Step>, context: &Context) -> Vec<Outcome> {
+    let is_quick = |step: &&Step| STEPS.iter().take_while(|s| s.name != "tests").any(|s| s.name == step.name);
+    let quick: Vec<&Step> = chosen.iter().copied().filter(is_quick).collect();
+    chosen.drain(..quick.len());
+    std::thread::scope(|scope| {
+        let running: Vec<_> = quick.iter().map(|step| scope.spawn(|| timed(step, context))).collect();
+        running.into_iter().map(|step| step.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+    })
 }
 
 /// Runs the remaining steps that belong beside the tests, one after another.

@@ -53,10 +53,12 @@ pub fn lint(root: &Path, env: &[(&str, &str)]) -> Result<(), String> {
     let compiler = Compiler::find(root);
     let compiled = [env, &compiler.environment()].concat();
     let warnings = artifacts::warnings(root, &[&TESTS[..], &WORKSPACE[..]].concat(), &compiled)?;
-    let benches = [&["clippy"], &WORKSPACE[..], &["--benches", "--", "-D", "warnings"]].concat();
-    shell::cargo(root, &benches, env)?;
-    // Without the feature only the façade and the command differ.
-    shell::cargo(root, &["clippy", "-p", "elbowroom-cli", "--bins", "--", "-D", "warnings"], env)?;
+    // `--benches` would also check each library as its unit tests see it, once more.
+    let benches = ["--bench", "*", "--", "-D", "warnings"];
+    shell::cargo(root, &[&["clippy"], &WORKSPACE[..], &benches].concat(), env)?;
+    // Without the feature only the façade and the command differ. The benches are named because all crates then have the
+    // features that they have above.
+    shell::cargo(root, &[&["clippy", "--workspace", "--bin", "elbowroom"], &benches[..]].concat(), env)?;
     if warnings == 0 { Ok(()) } else { Err(format!("{warnings} warnings")) }
 }
 

@@ -29,8 +29,10 @@ use units::Unit;
 /// Limits of a unit; a unit that takes longer hangs.
 const LIMIT: Limit = Limit { longest: Duration::from_mins(10), cancelled: None };
 
-/// Number of idle processors above which one unit more runs than there are processors.
+/// Number of idle processors above which one unit more runs.
 const RESTING: f64 = 0.5;
+/// How many units more may run than there are processors.
+const GAP_WORKERS: usize = 2;
 
 /// Choice of the units of tests to run.
 pub struct Choice<'a> {
@@ -121,7 +123,7 @@ fn run_units(programs: &[Program], progress: Progress, env: &[(&str, &str)], bes
             run_one(&unit);
         }
     };
-    // Tests of live processes mostly wait: one more worker runs units while processors are idle.
+    // Tests of live processes mostly wait: more workers run units while processors are idle.
     let work_in_gaps = || {
         while let Some(idle) = idle_share(Duration::from_millis(150)) {
             if locked(&progress).open.is_empty() {
@@ -137,7 +139,9 @@ fn run_units(programs: &[Program], progress: Progress, env: &[(&str, &str)], bes
         for _ in 1..workers {
             scope.spawn(work);
         }
-        scope.spawn(work_in_gaps);
+        for _ in 0..GAP_WORKERS {
+            scope.spawn(work_in_gaps);
+        }
         beside();
         work();
     });

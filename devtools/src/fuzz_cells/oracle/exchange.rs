@@ -72,7 +72,7 @@ pub fn check(
 
 /// Largest distance (m) between the centres of two of a robot's solids, at the start.
 fn spread_m(motion: &OracleMotion<'_>, pairs: &[SweptPair<'_>]) -> f64 {
-    let frames = motion.frames(&motion.q[0]);
+    let frames = motion.frames(0);
     let middles: Vec<_> = pairs.iter().map(|p| p.guarded.center(&frames[p.robot])).collect();
     let from = |a: &Vec3| middles.iter().map(|b| a.distance(*b)).fold(0.0, f64::max);
     middles.iter().map(from).fold(0.0, f64::max)

@@ -1,5 +1,7 @@
 //! Motion of robots and regions from one tick to the next.
 
+use std::borrow::Cow;
+
 use elbowroom_cell::Cell;
 use elbowroom_sim::Recording;
 
@@ -20,6 +22,8 @@ pub struct OracleMotion<'a> {
     pub times: Vec<f64>,
     /// Joint values per tick and robot.
     pub q: Vec<Vec<Vec<f64>>>,
+    /// Frames in the world per tick, robot and link.
+    frames: Vec<Vec<Vec<Frame>>>,
     /// Mounted tools per robot.
     tools: Vec<MountedTools>,
     /// Objects in the hands of robots.
@@ -34,7 +38,9 @@ impl<'a> OracleMotion<'a> {
         let places = (0..cell.regions.len()).map(|r| Place::new(cell, r, Some(recording))).collect();
         let tools = cell.robots.iter().map(|robot| MountedTools::new(robot, recording)).collect();
         let grips = grips(cell, recording, arms);
-        Self { cell, recording, arms, places, times, q: (0..ticks).map(at).collect(), tools, grips }
+        let q: Vec<Vec<Vec<f64>>> = (0..ticks).map(at).collect();
+        let frames = q.iter().map(|joints| frames(arms, joints)).collect();
+        Self { cell, recording, arms, places, times, q, frames, tools, grips }
     }
 
     pub fn ticks(&self) -> usize {
@@ -93,7 +99,7 @@ impl<'a> OracleMotion<'a> {
 
     /// Returns the frame of a region at a tick.
     pub fn region_at(&self, region: usize, k: usize) -> Frame {
-        self.places[region].at(self.times[k], &self.frames(&self.q[k]))
+        self.places[region].at(self.times[k], self.frames(k))
     }
 
     /// Returns the time (s) at a fraction `u` of the way from tick `k` to the next.
@@ -128,14 +134,24 @@ impl<'a> OracleMotion<'a> {
         k + 1 < self.ticks() && self.q[k][robot].iter().zip(&self.q[k + 1][robot]).any(|(a, b)| (a - b).abs() > 1e-9)
     }
 
-    /// Returns all robots' joint values at a fraction `u` of the way from tick `k` to the next.
-    pub fn joints(&self, k: usize, u: f64) -> Vec<Vec<f64>> {
-        let Some(next) = self.q.get(k + 1) else { return self.q[k].clone() };
-        let mix = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a + (b - a) * u).collect();
-        self.q[k].iter().zip(next).map(mix).collect()
+    /// Returns the frames of all robots' links at a tick.
+    pub fn frames(&self, k: usize) -> &[Vec<Frame>] {
+        &self.frames[k]
     }
 
-    pub fn frames(&self, joints: &[Vec<f64>]) -> Vec<Vec<Frame>> {
-        self.arms.iter().zip(joints).map(|(arm, q)| arm.frames(q)).collect()
+    /// Returns the frames of all robots' links at a fraction `u` of the way from tick `k` to the next.
+    pub fn frames_between(&self, k: usize, u: f64) -> Cow<'_, [Vec<Frame>]> {
+        match self.q.get(k + 1) {
+            Some(next) if u != 0.0 => {
+                let mix = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a + (b - a) * u).collect();
+                let joints: Vec<Vec<f64>> = self.q[k].iter().zip(next).map(mix).collect();
+                Cow::Owned(frames(self.arms, &joints))
+            }
+            _ => Cow::Borrowed(self.frames(k)),
+        }
     }
+}
+
+fn frames(arms: &[Arm], joints: &[Vec<f64>]) -> Vec<Vec<Frame>> {
+    arms.iter().zip(joints).map(|(arm, q)| arm.frames(q)).collect()
 }

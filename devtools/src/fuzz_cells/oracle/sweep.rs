@@ -77,8 +77,8 @@ impl<'a> SweptPair<'a> {
             return travel(place.radius_m);
         }
         // In a half-space only points that the solid can reach count.
-        let frames = motion.frames(&motion.q[k]);
-        let away = frames[self.robot][self.guarded.link].at.distance(place.carrier.at(from.0, &frames).at);
+        let frames = motion.frames(k);
+        let away = frames[self.robot][self.guarded.link].at.distance(place.carrier.at(from.0, frames).at);
         travel(away + self.guarded.radius_m + self.own_travel(k) + travel(0.0))
     }
 
@@ -97,12 +97,13 @@ impl<'a> SweptPair<'a> {
     /// Distance of the robot at one instant from the region at another.
     pub fn distance_between(&self, (k, u): (usize, f64), (region_k, region_u): (usize, f64)) -> Bounds {
         let place = &self.motion.places[self.region];
-        let frames = self.motion.frames(&self.motion.joints(k, u));
-        let later = self.motion.frames(&self.motion.joints(region_k, region_u));
+        let frames = self.motion.frames_between(k, u);
+        let is_at_once = (k, u) == (region_k, region_u);
+        let later = (!is_at_once).then(|| self.motion.frames_between(region_k, region_u));
         let times = &self.motion.times;
         let next = times.get(region_k + 1).unwrap_or(&times[region_k]);
         let t_s = times[region_k] + (next - times[region_k]) * region_u;
-        let at = place.at(t_s, &later);
+        let at = place.at(t_s, later.as_deref().unwrap_or(&frames));
         self.guarded.distance(&frames[self.robot], &place.solid, &at, FAR_M)
     }
 
@@ -139,9 +140,9 @@ impl<'a> SweptPair<'a> {
 
     /// Whether a point of it lies in the region at a tick, also where it is away from the surface of a mesh.
     pub fn is_surrounded(&self, k: usize) -> bool {
-        let frames = self.motion.frames(&self.motion.q[k]);
+        let frames = self.motion.frames(k);
         let place = &self.motion.places[self.region];
-        let at = place.at(self.motion.times[k], &frames);
+        let at = place.at(self.motion.times[k], frames);
         place.contains(&at, self.guarded.any_point(&frames[self.robot]))
     }
 

@@ -8,6 +8,9 @@ use super::frame::Frame;
 /// Least change per second² (m or rad) that counts as an acceleration; smaller ones are rounding.
 const ACCELERATION: f64 = 1e-6;
 
+/// Share of a tick that is no time.
+const SAME_TICK: f64 = 1e-9;
+
 /// A body with its poses at all ticks.
 #[derive(Debug)]
 pub struct Track {
@@ -23,6 +26,11 @@ impl Track {
     pub fn at(&self, t_s: f64) -> Frame {
         let last = self.frames.len().saturating_sub(1);
         let ticks = (t_s / self.tick_s).max(0.0);
+        // Times of ticks are rounded.
+        let nearest = ticks.round();
+        if (ticks - nearest).abs() < SAME_TICK {
+            return self.frames[(nearest as usize).min(last)];
+        }
         let k = (ticks.floor() as usize).min(last);
         let Some(next) = self.frames.get(k + 1) else { return self.frames[k] };
         self.frames[k].moved_towards(next, ticks - k as f64)
