@@ -64,8 +64,8 @@ fn lines(table: &[&str], own: &str, has_faults: bool, random: &mut Random) -> Ve
         }
         // The rows of a file say where a belt is.
         ["encoder", _] if own.contains("speed =") => {
-            some(&mut lines, 25, random, |r| format!("at = {}", r.between(-0.5, 0.5)));
-            some(&mut lines, 25, random, |r| format!("end = {}", r.between(3.0, 8.0)));
+            some(&mut lines, 60, random, |r| format!("at = {}", r.between(-0.5, 0.5)));
+            some(&mut lines, 60, random, |r| format!("end = {}", r.between(3.0, 8.0)));
         }
         ["robot", _] => {
             some(&mut lines, 20, random, |r| format!("jerk = {}", r.scaled(5.0, 500.0)));
@@ -96,15 +96,15 @@ fn force(lines: &mut Vec<String>, own: &str, random: &mut Random) {
 }
 
 fn avoidance(lines: &mut Vec<String>, random: &mut Random) {
-    some(lines, 30, random, |_| "robots = []".to_owned());
-    some(lines, 30, random, |r| format!("speed = {}", r.scaled(0.1, 3.0)));
-    some(lines, 30, random, |r| format!("clearance = {}", r.scaled(0.005, 0.2)));
-    some(lines, 30, random, |r| format!("return_speed = {}", r.whole(5, 100)));
-    some(lines, 30, random, |r| format!("stall_timeout = {}", r.scaled(0.1, 5.0)));
-    some(lines, 30, random, |r| format!("horizon = {}", r.between(0.0, 5.0)));
-    some(lines, 20, random, |r| format!("noise = {}", r.scaled(0.001, 0.02)));
-    some(lines, 20, random, |r| format!("delay_ms = {}", r.whole(0, 200)));
-    some(lines, 30, random, |r| format!("plan_ms = {}", r.whole(0, 500)));
+    some(lines, 50, random, |_| "robots = []".to_owned());
+    some(lines, 50, random, |r| format!("speed = {}", r.scaled(0.1, 3.0)));
+    some(lines, 50, random, |r| format!("clearance = {}", r.scaled(0.005, 0.2)));
+    some(lines, 50, random, |r| format!("return_speed = {}", r.whole(5, 100)));
+    some(lines, 50, random, |r| format!("stall_timeout = {}", r.scaled(0.1, 5.0)));
+    some(lines, 85, random, |r| format!("horizon = {}", r.between(0.0, 5.0)));
+    some(lines, 40, random, |r| format!("noise = {}", r.scaled(0.001, 0.02)));
+    some(lines, 40, random, |r| format!("delay_ms = {}", r.whole(0, 200)));
+    some(lines, 50, random, |r| format!("plan_ms = {}", r.whole(0, 500)));
 }
 
 /// Adds a line in this percentage of cases.

@@ -20,7 +20,7 @@ mod settings;
 mod tools;
 
 use super::random::Random;
-use super::spec::{CellSpec, StepSpec};
+use super::spec::{CellSpec, ObjectSpec, StepSpec};
 
 pub use settings::Places;
 use settings::settings;
@@ -104,11 +104,20 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
     if has_grids && let Ok(cell) = spec.parse(places.cells) {
         grids::some(&mut spec, &cell, random);
     }
+    if random.percent(10) && !matches!(kind, Kind::Guided | Kind::Cooperating) {
+        spec.objects.push(floor(random));
+    }
     extras::add(&mut spec, random);
     if spec.repeat == 0 && can_repeat(kind, &spec) && random.percent(10) {
         spec.repeat = 2;
     }
     spec
+}
+
+/// A floor far below: robots collide with it, and nothing else.
+fn floor(random: &mut Random) -> ObjectSpec {
+    let at = [0.0, 0.0, random.between(-4.0, -1.0)];
+    ObjectSpec { name: "floor".into(), shape: "shape = \"plane\"\n".into(), at, ..ObjectSpec::default() }
 }
 
 /// Whether the programs can run again from where they end; a person who guides a robot does not come again.

@@ -4,21 +4,31 @@ use elbowroom_spatial::Vec3;
 
 /// Returns the nearest point, and the corners of the face that it lies in, of up to four corners.
 pub fn nearest(corners: &[Vec3]) -> (Vec3, Vec<Vec3>) {
-    let of_mask = |mask: u32| corners.iter().enumerate().filter(move |(i, _)| mask & (1 << i) != 0).map(|(_, c)| *c);
-    let mut best = (corners[0], 1);
+    // Without lists and iterators: this is the innermost loop of the oracle, which is compiled without optimization.
+    let (mut best, mut least) = ((corners[0], 1), f64::INFINITY);
     for mask in 1_u32..1 << corners.len() {
-        // Without a list per face: this is the innermost loop of the oracle.
-        let (mut face, mut count) = ([Vec3::ZERO; 4], 0);
-        for corner in of_mask(mask) {
-            face[count] = corner;
-            count += 1;
-        }
+        let (face, count) = face(corners, mask);
         let Some(point) = nearest_of_face(&face[..count]) else { continue };
-        if mask == 1 || point.length_squared() < best.0.length_squared() {
-            best = (point, mask);
+        let length = point.length_squared();
+        if mask == 1 || length < least {
+            (best, least) = ((point, mask), length);
         }
     }
-    (best.0, of_mask(best.1).collect())
+    let (face, count) = face(corners, best.1);
+    (best.0, face[..count].to_vec())
+}
+
+/// The corners whose bits are set, and their number.
+fn face(corners: &[Vec3], mask: u32) -> ([Vec3; 4], usize) {
+    let (mut face, mut count, mut i) = ([Vec3::ZERO; 4], 0, 0);
+    while i < corners.len() {
+        if mask & (1 << i) != 0 {
+            face[count] = corners[i];
+            count += 1;
+        }
+        i += 1;
+    }
+    (face, count)
 }
 
 /// Projects the origin onto the plane of a face; `None` if the projection is not in the face.

@@ -226,8 +226,14 @@ impl Piece {
     fn support(&self, d: Vec3) -> Vec3 {
         match &self.core {
             Core::Points(points) => {
-                let better = |best: Vec3, p: &Vec3| if p.dot(d) > best.dot(d) { *p } else { best };
-                points.iter().fold(points[0], better)
+                let (mut best, mut most) = (points[0], points[0].dot(d));
+                for point in &points[1..] {
+                    let along = point.dot(d);
+                    if along > most {
+                        (best, most) = (*point, along);
+                    }
+                }
+                best
             }
             Core::Box(h) => Vec3::new(h.x.copysign(d.x), h.y.copysign(d.y), h.z.copysign(d.z)),
             Core::Cylinder(half, radius) => {

@@ -65,8 +65,12 @@ impl Part<'_, '_> {
             let distance = self.pair.distance(k, 0.0);
             let is_inside = distance.upper <= 0.0 || self.pair.is_surrounded(k);
             self.near = is_inside || distance.upper < within_m;
-            // Deep inside a mesh its surface is away; near its surface every tick is measured.
-            self.gap_m = if is_inside { distance.lower } else { distance.lower - within_m };
+            // Deep inside a mesh its surface is away.
+            self.gap_m = match (is_inside, self.near) {
+                (true, _) => distance.lower,
+                (false, true) => within_m - distance.upper,
+                (false, false) => distance.lower - within_m,
+            };
         }
         if k + 1 < self.pair.motion.ticks() {
             self.gap_m -= self.pair.travel(k);
