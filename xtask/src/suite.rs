@@ -143,7 +143,7 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     if failed.is_empty() { Ok(()) } else { Err(Failure::Check(format!("failed: {}", failed.join(", ")))) }
 }
 
-/// Runs the chosen steps that come before `tests`, each on a processor.
+/// Runs the chosen steps that come before `tests`, all at once: each takes one processor. What they print is mixed.
 fn quick_steps(chosen: &mut Vec<&Step>, context: &Context) -> Vec<Outcome> {
     let is_quick = |step: &&Step| STEPS.iter().take_while(|s| s.name != "tests").any(|s| s.name == step.name);
     let quick: Vec<&Step> = chosen.iter().copied().filter(is_quick).collect();

@@ -22,7 +22,7 @@ pub fn run(cell: &Cell, faults: &[InputFault], repeat: u32) -> Result<CheckedRun
     run_and_judge(cell, faults, repeat, |_, _| ())
 }
 
-/// Like [`run`], for a cell that is not written to a file yet: what its files say is judged too.
+/// Like [`run`], for a cell that is not written to a file yet: whether its recordings are played as written is judged too.
 pub fn run_spec(spec: &CellSpec, places: &Places<'_>) -> Result<CheckedRun, String> {
     run_and_judge(&spec.parse(places.cells)?, &spec.faults, spec.repeat, |recording, findings| {
         oracle::recorded::check(spec, recording, findings);

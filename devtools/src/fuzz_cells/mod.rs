@@ -241,11 +241,13 @@ fn report(
     let file = places.cells.join(format!("{}-{}-{case}.toml", kind.name(), options.seed));
     let Ok(cell) = small.parse(places.cells) else { return };
     let words = summary::in_words(&finding, &cell);
-    let head = format!(
-        "# {words}\n# Found by: cargo xtask fuzz cells --kind {} --seed {} --case {case}\n# Again: cargo xtask fuzz cells --replay FILE, or elbowroom run FILE\n",
-        kind.name(),
-        options.seed
-    );
+    let found_by = format!("cargo xtask fuzz cells --kind {} --seed {} --case {case}", kind.name(), options.seed);
+    // What was written into a recording is known only to the generator.
+    let again = match finding {
+        Finding::OffRecording { .. } => "the same",
+        _ => "cargo xtask fuzz cells --replay FILE, or elbowroom run FILE",
+    };
+    let head = format!("# {words}\n# Found by: {found_by}\n# Again: {again}\n");
     if std::fs::write(&file, head + &text).and_then(|()| small.write_files(places.cells)).is_ok() {
         summary.files.push((file, words));
     }

@@ -124,15 +124,18 @@ fn run_units(programs: &[Program], progress: Progress, env: &[(&str, &str)], bes
         }
     };
     // Tests of live processes mostly wait: more workers run units while processors are idle.
+    let gap = Mutex::new(());
     let work_in_gaps = || {
-        while let Some(idle) = idle_share(Duration::from_millis(150)) {
+        loop {
+            // One measures at a time, so that it sees the unit that the other one has started.
+            let gap = locked(&gap);
+            let Some(idle) = idle_share(Duration::from_millis(150)) else { break };
             if locked(&progress).open.is_empty() {
                 break;
             }
-            if idle * workers as f64 > RESTING {
-                let next = locked(&progress).open.pop_front();
-                next.iter().for_each(run_one);
-            }
+            let next = if idle * workers as f64 > RESTING { locked(&progress).open.pop_front() } else { None };
+            drop(gap);
+            next.iter().for_each(run_one);
         }
     };
     std::thread::scope(|scope| {

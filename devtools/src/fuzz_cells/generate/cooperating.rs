@@ -103,7 +103,7 @@ fn keys(count: usize, gap_m: f64, random: &mut Random) -> String {
         }
     };
     add("speed", 50, 0.02, 1.5);
-    add("turn_speed", 40, 0.1, 4.0);
+    add("turn_speed", 70, 0.1, 4.0);
     add("approach_speed", 30, 0.02, 0.5);
     add("settle_ms", 30, 10.0, 600.0);
     add("horizon_s", 20, 0.5, 8.0);

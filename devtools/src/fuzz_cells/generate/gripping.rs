@@ -65,7 +65,7 @@ fn carry(spec: &mut CellSpec, robot: usize, places: &Places<'_>, random: &mut Ra
     let rests: Vec<(usize, Vec<f64>)> = std::iter::once((0, spec.robots[robot].start.clone())).chain(ends).collect();
     let last = rests.len() - 1;
     let first = random.whole(0, last.saturating_sub(1));
-    let end = if random.percent(70) { random.whole(first, last) } else { last };
+    let end = if random.percent(70) { random.whole((first + 1).min(last), last) } else { last };
     let (at, q) = rests[first].clone();
 
     let name = format!("part{}", spec.objects.len());
@@ -76,12 +76,12 @@ fn carry(spec: &mut CellSpec, robot: usize, places: &Places<'_>, random: &mut Ra
     match random.whole(0, 9) {
         // It is put down where it was, so that the program can be repeated.
         0..=2 => {
-            ends.extend(rests[end..].iter().map(|(_, q)| q.clone()).chain([q.clone()]));
+            ends.extend(rests[end + 1..].iter().map(|(_, q)| q.clone()).chain([q.clone()]));
             steps.extend([StepSpec::Joint { to: q, percent: 100.0 }, StepSpec::Release(name.clone())]);
             spec.robots[robot].program.repeat = random.one(&[1, 2, 2]);
         }
         3..=7 => steps.insert(rests[end].0, StepSpec::Release(name.clone())),
-        _ => ends.extend(rests[end..].iter().map(|(_, q)| q.clone())),
+        _ => ends.extend(rests[end + 1..].iter().map(|(_, q)| q.clone())),
     }
     spec.robots[robot].program.steps.insert(at, StepSpec::Grip(name));
     spec.objects.push(part);

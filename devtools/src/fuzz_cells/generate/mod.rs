@@ -114,7 +114,7 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
     spec
 }
 
-/// A floor far below: robots collide with it, and nothing else.
+/// A floor far below. Only robots, and the parts that they hold, collide with it.
 fn floor(random: &mut Random) -> ObjectSpec {
     let at = [0.0, 0.0, random.between(-4.0, -1.0)];
     ObjectSpec { name: "floor".into(), shape: "shape = \"plane\"\n".into(), at, ..ObjectSpec::default() }

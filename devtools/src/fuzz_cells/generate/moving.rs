@@ -63,7 +63,7 @@ fn belt(direction: Vector, random: &mut Random) -> BeltSpec {
     BeltSpec { name: "belt".into(), direction, travel, wrap }
 }
 
-/// Makes poses near the world's frame, which is where the region then is.
+/// Makes poses near that of the world: the region, whose coordinates are in this frame, stays near its place.
 fn poses(random: &mut Random) -> Vec<PoseRow> {
     let (way, turn) = (random.scaled(0.02, 0.5), if random.percent(60) { random.scaled(0.05, 1.0) } else { 0.0 });
     let mut row = PoseRow { t_s: random.one(&[0.0, 0.5]), at: random.vector(0.2), rpy: random.vector(turn) };

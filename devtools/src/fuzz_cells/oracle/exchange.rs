@@ -90,8 +90,8 @@ fn mark_inside(pair: &SweptPair<'_>, during: &mut [bool]) {
     }
 }
 
-/// Whether a robot has exchanged a tool, or gripped an object, into the region by tick `k`, and `check` says that this is not
-/// excluded.
+/// Whether a robot that is inside at tick `k` came in by exchanging a tool or by gripping an object, and `check` says that this
+/// is not excluded.
 fn is_exchanged_inside(
     motion: &OracleMotion<'_>,
     region: usize,
@@ -99,8 +99,8 @@ fn is_exchanged_inside(
     promises: &Promises<'_>,
     k: usize,
 ) -> bool {
-    let into = |tick: &usize| *tick > 0 && *tick <= k && visit.2[*tick] && !visit.2[tick - 1];
-    !promises.exclude(region, visit.0) && motion.hand_changes(visit.0).iter().any(into)
+    let entered = entered_at(visit, k);
+    entered > 0 && motion.hand_gains(visit.0).contains(&entered) && !promises.exclude(region, visit.0)
 }
 
 fn two_inside(

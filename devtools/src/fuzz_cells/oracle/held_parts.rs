@@ -1,6 +1,7 @@
 //! Objects in the hands of robots, by the steps that the recording names.
 
 use elbowroom_cell::Cell;
+use elbowroom_robot::RobotId;
 use elbowroom_sim::{Recording, RunEvent};
 
 use super::arm::Arm;
@@ -26,6 +27,10 @@ pub fn grips(cell: &Cell, recording: &Recording, arms: &[Arm]) -> Vec<Grip> {
         let robot = cell.robots.iter().position(|r| r.name == event.robot);
         let object = cell.objects.iter().position(|o| o.name == event.region);
         let (Some(robot), Some(object)) = (robot, object) else { continue };
+        // A work-piece that robots carry as one has its own check.
+        if cell.guidance.virtual_robot_of(RobotId(robot)).is_some() {
+            continue;
+        }
         let tick = (event.t_s / recording.tick_s).round() as usize;
         let Some(sample) = recording.robots[robot].samples.get(tick) else { continue };
         let flange = arms[robot].frames(&sample.q)[cell.robots[robot].flange.0];

@@ -63,6 +63,12 @@ impl<'a> OracleMotion<'a> {
         changes
     }
 
+    /// The ticks at which something comes into the hand: a tool, or an object.
+    pub fn hand_gains(&self, robot: usize) -> Vec<usize> {
+        let grips = self.grips.iter().filter(|g| g.robot == robot).map(|g| g.from);
+        self.tools[robot].changes().chain(grips).collect()
+    }
+
     /// Returns the spans, as first tick and tick after the last, in which a robot has the same tools and objects.
     pub fn hand_spans(&self, robot: usize) -> Vec<(usize, usize)> {
         let changes = self.hand_changes(robot);

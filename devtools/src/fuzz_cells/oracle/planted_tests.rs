@@ -151,6 +151,15 @@ fn a_part_that_is_carried_into_a_region_is_found_and_one_that_was_put_down_is_no
     assert_eq!(found(PART, false), []);
     let carried = PART.replace("[0.5]", "[1.05]");
     assert_eq!(found(&carried, true), []);
+    // Put down elsewhere, and gripped again there.
+    let (cell, _) = PART.split_once("steps").unwrap();
+    let again = format!(
+        r#"{cell}steps = [
+            {{ grip = "part" }}, {{ move = "joint", to = [0.5] }}, {{ release = "part" }}, {{ move = "joint", to = [0] }},
+            {{ move = "joint", to = [0.5] }}, {{ grip = "part" }}, {{ move = "joint", to = [1.05] }}]"#
+    );
+    assert_eq!(found(&again, true), []);
+    assert!(matches!(found(&again, false)[..], [Finding::Entry { robot: 0, region: 0, .. }]));
     let found = found(&carried, false);
     let [Finding::Entry { robot: 0, region: 0, t_s, .. }] = found[..] else { panic!("{found:?}") };
     // The part's end reaches the plate at 0.99 m.

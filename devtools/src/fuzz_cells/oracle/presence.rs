@@ -85,9 +85,10 @@ impl<'a> Watch<'a> {
         let at_rest = |k: &usize| *k == 0 || (!moves(*k) && !moves(k - 1)) || steps.contains(k);
         let first = (begin..end).find(at_rest)?;
         let mut rests = (first..end).step_by(LATER_TICKS).filter(at_rest);
-        // A robot at rest cannot leave a region that does not move.
+        // At rest a robot cannot leave a region that does not move.
         let from = if self.place_is_fixed() {
-            Some(first).filter(|k| self.is_outside(*k))
+            let begins = |k: &usize| at_rest(k) && (*k == first || !at_rest(&(k - 1)));
+            (first..end).filter(begins).find(|k| self.is_outside(*k))
         } else {
             rests.find(|k| self.is_outside(*k))
         }?;

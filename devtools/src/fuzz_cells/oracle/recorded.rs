@@ -9,6 +9,8 @@ use crate::fuzz_cells::spec::{CellSpec, RecordingSpec};
 const OFF: f64 = 1e-9;
 /// Rounding of times, s.
 const ROUNDING_S: f64 = 1e-9;
+/// By how much a robot whose override is always full may be late, s: a recording that begins in motion is joined.
+const LATE_S: f64 = 1.0;
 
 /// Compares each robot with the rows that were written, in their units and with their offset.
 pub fn check(spec: &CellSpec, recording: &Recording, findings: &mut Findings) {
@@ -23,22 +25,29 @@ pub fn check(spec: &CellSpec, recording: &Recording, findings: &mut Findings) {
 pub fn first_off(played: &RecordingSpec, robot: usize, recording: &Recording) -> Option<Finding> {
     let (begin_s, end_s) = (played.rows.first()?.0, played.rows.last()?.0);
     let mut along = Along { rows: &played.rows, row: 0, share: 0.0 };
+    let (mut last_s, mut was_free) = (begin_s, true);
     for sample in &recording.robots[robot].samples {
         let t_s = sample.t_s;
         // The robot starts at the first row, whatever its time is.
         let earliest_s = |row_s: f64| row_s - begin_s + played.offset_s();
         let Some(reached_s) = along.reach(&sample.q) else {
             // From the end on it may drive back for the next pass, also within a tick.
-            let is_on = t_s <= earliest_s(end_s);
-            return is_on.then_some(Finding::OffRecording { robot, t_s, ahead_s: None });
+            let ended = end_s - last_s <= recording.tick_s + ROUNDING_S;
+            return (!ended).then_some(Finding::OffRecording { robot, t_s, ahead_s: None });
         };
         let ahead_s = earliest_s(reached_s) - t_s;
         if reached_s - begin_s > ROUNDING_S && ahead_s > ROUNDING_S {
             return Some(Finding::OffRecording { robot, t_s, ahead_s: Some(ahead_s) });
         }
-        if along.is_at_end() {
+        // Nothing but the joined start delays a robot at full override.
+        was_free &= sample.speed_override >= 1.0;
+        if was_free && ahead_s < -LATE_S {
+            return Some(Finding::OffRecording { robot, t_s, ahead_s: Some(ahead_s) });
+        }
+        if along.is_at_end(&sample.q) {
             break;
         }
+        last_s = reached_s;
     }
     None
 }
@@ -61,18 +70,22 @@ impl Along<'_> {
             let way = || a.iter().zip(b).map(|(a, b)| b - a);
             let length = way().map(|d| d * d).sum::<f64>();
             let along = way().zip(a).zip(q).map(|((d, a), q)| d * (q - a)).sum::<f64>();
-            let share = if length > 0.0 { (along / length).clamp(least, 1.0) } else { least };
-            let is_there = way().zip(a).zip(q).all(|((d, a), q)| (a + d * share - q).abs() <= OFF);
+            let share = |along: f64| if length > 0.0 { (along / length).clamp(least, 1.0) } else { least };
+            let nearest = share(along);
+            let is_there = way().zip(a).zip(q).all(|((d, a), q)| (a + d * nearest - q).abs() <= OFF);
             if is_there {
-                (self.row, self.share) = (row, share);
-                return Some(t0 + (t1 - t0) * share);
+                // The earliest place that these numbers may mean.
+                let earliest = share(along - OFF * length.sqrt());
+                (self.row, self.share) = (row, earliest);
+                return Some(t0 + (t1 - t0) * earliest);
             }
         }
         None
     }
 
-    fn is_at_end(&self) -> bool {
-        self.row + 2 >= self.rows.len() && self.share >= 1.0
+    /// Whether nothing but rest is left at these joint values.
+    fn is_at_end(&self, q: &[f64]) -> bool {
+        self.rows[self.row + 1..].iter().all(|(_, row)| row.iter().zip(q).all(|(a, b)| (a - b).abs() <= OFF))
     }
 }
 
@@ -84,12 +97,23 @@ mod tests {
     fn a_path_is_followed_forwards_only() {
         let rows = [(0.0, vec![0.0, 0.0]), (1.0, vec![1.0, 0.0]), (3.0, vec![1.0, 0.0]), (4.0, vec![0.0, 0.0])];
         let mut along = Along { rows: &rows, row: 0, share: 0.0 };
-        assert_eq!(along.reach(&[0.25, 0.0]), Some(0.25));
-        assert_eq!(along.reach(&[0.5, 0.0]), Some(0.5));
+        let mut is_at = |q: [f64; 2], t_s: Option<f64>| {
+            let found = along.reach(&q);
+            assert!(found.zip(t_s).map_or(found == t_s, |(a, b)| (a - b).abs() < 1e-8), "{found:?} {t_s:?}");
+        };
+        is_at([0.25, 0.0], Some(0.25));
+        is_at([0.5, 0.0], Some(0.5));
         // Back again is only possible on the way back.
-        assert_eq!(along.reach(&[0.25, 0.0]), Some(3.75));
-        assert_eq!(along.reach(&[0.25, 0.1]), None);
-        assert_eq!(along.reach(&[0.0, 0.0]), Some(4.0));
-        assert!(along.is_at_end());
+        is_at([0.25, 0.0], Some(3.75));
+        is_at([0.25, 0.1], None);
+        is_at([0.0, 0.0], Some(4.0));
+        assert!(along.is_at_end(&[0.0, 0.0]) && !along.is_at_end(&[0.1, 0.0]));
+    }
+
+    #[test]
+    fn rounding_in_a_short_segment_is_no_time() {
+        let rows = [(0.0, vec![0.3]), (0.05, vec![0.3 + 1e-9]), (0.1, vec![0.4])];
+        let mut along = Along { rows: &rows, row: 0, share: 0.0 };
+        assert_eq!(along.reach(&[0.3 + 4e-16]), Some(0.0));
     }
 }

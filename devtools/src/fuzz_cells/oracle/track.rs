@@ -8,7 +8,7 @@ use super::frame::Frame;
 /// Least change per second² (m or rad) that counts as an acceleration; smaller ones are rounding.
 const ACCELERATION: f64 = 1e-6;
 
-/// Share of a tick that is no time.
+/// Times that are less than this share of a tick apart are equal.
 const SAME_TICK: f64 = 1e-9;
 
 /// A body with its poses at all ticks.

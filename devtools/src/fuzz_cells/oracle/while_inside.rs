@@ -14,7 +14,7 @@ const SAME_OVERRIDE: f64 = 1e-9;
 const MARGIN_M: f64 = 10.0 * TOLERANCE_M;
 
 /// Finds the first tick at which a robot is in a speed zone with a higher override, and the first at which an output is off that
-/// should be on.
+/// should be on. Solids that no joint moves do not count.
 pub fn check(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], findings: &mut Findings) {
     // A limit of its rate lets the override come down late.
     let is_at_once = motion.cell.monitoring.laws.override_rate == 0.0;

@@ -117,7 +117,10 @@ fn shorter_program(list: &mut Candidates<'_>, r: usize, program: &ProgramSpec) {
             |recording| drop(recording.rows.drain(..recording.rows.len() / 2)),
             every_other_row,
         ];
-        for change in changes.into_iter().filter(|_| rows / 2 >= LEAST_ROWS) {
+        // Rows of a file without times have their distances.
+        let has_times = recording.layout.as_ref().is_none_or(|layout| layout.period_ms.is_none());
+        let changes = changes.into_iter().take(if has_times { 3 } else { 2 });
+        for change in changes.filter(|_| rows / 2 >= LEAST_ROWS) {
             list.push(|c| c.robots[r].program.recording.iter_mut().for_each(change));
         }
     }
