@@ -1,4 +1,4 @@
-//! Check of robots that play recordings: they are on the path of the rows, and not ahead of their times.
+//! Check of robots that play recordings: on the path of the rows, not ahead of their times, and not late at full override.
 
 use elbowroom_sim::Recording;
 
