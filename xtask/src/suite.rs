@@ -146,8 +146,8 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
 /// Runs the chosen steps that come before `tests`, all at once: each takes one processor. What they print is mixed.
 fn quick_steps(chosen: &mut Vec<&Step>, context: &Context) -> Vec<Outcome> {
     let is_quick = |step: &&Step| STEPS.iter().take_while(|s| s.name != "tests").any(|s| s.name == step.name);
-    let quick: Vec<&Step> = chosen.iter().copied().filter(is_quick).collect();
-    chosen.drain(..quick.len());
+    let quick = chosen.iter().take_while(|step| is_quick(step)).count();
+    let quick: Vec<&Step> = chosen.drain(..quick).collect();
     std::thread::scope(|scope| {
         let running: Vec<_> = quick.iter().map(|step| scope.spawn(|| timed(step, context))).collect();
         running.into_iter().map(|step| step.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()

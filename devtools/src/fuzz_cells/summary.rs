@@ -279,7 +279,8 @@ fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
             cell.regions[*region].region.name
         ),
         Finding::OffRecording { robot: r, t_s, ahead_s: Some(ahead_s) } => {
-            format!("robot {} is {ahead_s:.6} s ahead of its recording at {t_s:.4} s", robot(r))
+            let side = if *ahead_s > 0.0 { "ahead of" } else { "behind" };
+            format!("robot {} is {:.6} s {side} its recording at {t_s:.4} s", robot(r), ahead_s.abs())
         }
         Finding::OffRecording { robot: r, t_s, ahead_s: None } => {
             format!("robot {} is not on the path of its recording at {t_s:.4} s", robot(r))

@@ -90,16 +90,15 @@ fn mark_inside(pair: &SweptPair<'_>, during: &mut [bool]) {
     }
 }
 
-/// Whether a robot that is inside at tick `k` came in by exchanging a tool or by gripping an object, and `check` says that this
+/// Whether a robot that is inside since tick `entered` came in by exchanging a tool or by gripping an object, and `check` says that this
 /// is not excluded.
 fn is_exchanged_inside(
     motion: &OracleMotion<'_>,
     region: usize,
     visit: &ZoneVisit<'_>,
     promises: &Promises<'_>,
-    k: usize,
+    entered: usize,
 ) -> bool {
-    let entered = entered_at(visit, k);
     entered > 0 && motion.hand_gains(visit.0).contains(&entered) && !promises.exclude(region, visit.0)
 }
 
@@ -123,8 +122,9 @@ fn two_inside(
         }
         let at_once = (0..PARTS).map(|i| i as f64 / PARTS as f64).find(|u| inside(a, k, *u) && inside(b, k, *u));
         let Some(u) = at_once else { continue };
-        let mounted = [a, b].iter().any(|visit| is_exchanged_inside(motion, region, visit, promises, k));
-        if mounted || !is_driven_in(motion, region, [(a, entered[0]), (b, entered[1])]) {
+        let visits = [(a, entered[0]), (b, entered[1])];
+        let mounted = visits.iter().any(|(visit, at)| is_exchanged_inside(motion, region, visit, promises, *at));
+        if mounted || !is_driven_in(motion, region, visits) {
             findings.unforeseen_entries += 1;
             excused = Some(entered);
             continue;

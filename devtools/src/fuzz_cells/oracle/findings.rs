@@ -38,7 +38,7 @@ pub enum Finding {
     TooFastInZone { robot: usize, region: usize, t_s: f64, speed_override: f64, most: f64 },
     /// An output was off while a robot was in the region, or in the warning zone, that switches it on.
     OutputOff { robot: usize, region: usize, t_s: f64, output: u8 },
-    /// A robot that plays a recording was off its path, or ahead of its time.
+    /// A robot that plays a recording was off its path, or ahead of its time; behind it is negative.
     OffRecording { robot: usize, t_s: f64, ahead_s: Option<f64> },
     /// A mechanism was slowed down, or a region concerns it.
     Slowed { robot: usize, t_s: f64 },

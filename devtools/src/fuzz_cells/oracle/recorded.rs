@@ -41,10 +41,12 @@ pub fn first_off(played: &RecordingSpec, robot: usize, recording: &Recording) ->
         }
         // Nothing but the joined start delays a robot at full override.
         was_free &= sample.speed_override >= 1.0;
-        if was_free && ahead_s < -LATE_S {
-            return Some(Finding::OffRecording { robot, t_s, ahead_s: Some(ahead_s) });
+        let rests_s = along.rests_s(&sample.q).unwrap_or(reached_s);
+        let late_s = t_s - earliest_s(rests_s);
+        if was_free && late_s > LATE_S && rests_s < end_s {
+            return Some(Finding::OffRecording { robot, t_s, ahead_s: Some(-late_s) });
         }
-        if along.is_at_end(&sample.q) {
+        if rests_s >= end_s {
             break;
         }
         last_s = reached_s;
@@ -83,9 +85,10 @@ impl Along<'_> {
         None
     }
 
-    /// Whether nothing but rest is left at these joint values.
-    fn is_at_end(&self, q: &[f64]) -> bool {
-        self.rows[self.row + 1..].iter().all(|(_, row)| row.iter().zip(q).all(|(a, b)| (a - b).abs() <= OFF))
+    /// Time of the last of the next rows that have these joint values.
+    fn rests_s(&self, q: &[f64]) -> Option<f64> {
+        let is_same = |row: &[f64]| row.iter().zip(q).all(|(a, b)| (a - b).abs() <= OFF);
+        self.rows[self.row + 1..].iter().take_while(|(_, row)| is_same(row)).last().map(|(t_s, _)| *t_s)
     }
 }
 
@@ -107,7 +110,9 @@ mod tests {
         is_at([0.25, 0.0], Some(3.75));
         is_at([0.25, 0.1], None);
         is_at([0.0, 0.0], Some(4.0));
-        assert!(along.is_at_end(&[0.0, 0.0]) && !along.is_at_end(&[0.1, 0.0]));
+        assert_eq!((along.rests_s(&[0.0, 0.0]), along.rests_s(&[0.1, 0.0])), (Some(4.0), None));
+        let begin = Along { rows: &rows, row: 0, share: 1.0 };
+        assert_eq!(begin.rests_s(&[1.0, 0.0]), Some(3.0));
     }
 
     #[test]

@@ -49,18 +49,13 @@ impl GuidanceSpec {
     /// The file of the stream.
     pub(super) fn file(&self) -> CellFile {
         let fixture = if self.switches { ",fixture.shield" } else { "" };
-        let mut text = format!("t_s,x,y,z,qx,qy,qz,qw,enable,clutch{fixture}\n");
-        for row in &self.rows {
-            let [x, y, z] = row.at.map(|v| v as f64 * 1e-6);
-            let [a, b, c, d] = row.turn.map(|v| v as f64 * 1e-6);
-            let (enable, clutch) = (u8::from(row.enable), u8::from(row.clutch));
-            let _ = write!(text, "{},{x},{y},{z},{a},{b},{c},{d},{enable},{clutch}", f64::from(row.t_ms) * 1e-3);
-            text += match (self.switches, row.shield) {
-                (false, _) => "\n",
-                (true, true) => ",1\n",
-                (true, false) => ",0\n",
-            };
-        }
-        CellFile::csv("hand", text)
+        let row = |row: &HandRow| {
+            let mut values = vec![f64::from(row.t_ms) * 1e-3];
+            values.extend(row.at.iter().chain(&row.turn).map(|v| *v as f64 * 1e-6));
+            values.extend([row.enable, row.clutch].map(f64::from));
+            values.extend(self.switches.then_some(f64::from(row.shield)));
+            values
+        };
+        CellFile::csv("hand", &format!("t_s,x,y,z,qx,qy,qz,qw,enable,clutch{fixture}"), self.rows.iter().map(row))
     }
 }

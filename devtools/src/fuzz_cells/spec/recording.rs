@@ -1,7 +1,5 @@
 //! Recordings that robots play: CSV files beside the cell.
 
-use std::fmt::Write as _;
-
 use super::files::CellFile;
 
 /// Rows of time (s) and joint values (rad or m).
@@ -42,22 +40,13 @@ impl RecordingSpec {
     }
 
     pub(super) fn file(&self) -> CellFile {
-        CellFile::csv("recording", self.layout.as_ref().map_or_else(|| self.csv(), |layout| layout.csv(&self.rows)))
-    }
-
-    fn csv(&self) -> String {
+        if let Some(layout) = &self.layout {
+            return layout.file(&self.rows);
+        }
         let joints = self.rows.first().map_or(0, |(_, q)| q.len());
-        let mut text = String::from("t_s");
-        for joint in 1..=joints {
-            let _ = write!(text, ",joint_{joint}");
-        }
-        for (t_s, q) in &self.rows {
-            let _ = write!(text, "\n{t_s}");
-            for value in q {
-                let _ = write!(text, ",{value}");
-            }
-        }
-        text + "\n"
+        let head: String = (1..=joints).map(|joint| format!(",joint_{joint}")).collect::<Vec<String>>().concat();
+        let row = |(t_s, q): &(f64, Vec<f64>)| [&[*t_s], &q[..]].concat();
+        CellFile::csv("recording", &format!("t_s{head}"), self.rows.iter().map(row))
     }
 }
 
@@ -84,25 +73,20 @@ impl RecordingLayout {
         format!("{{ {} }}", keys.join(", "))
     }
 
-    fn csv(&self, rows: &[(f64, Vec<f64>)]) -> String {
+    fn file(&self, rows: &[(f64, Vec<f64>)]) -> CellFile {
         let name = |joint: usize| if self.renames { format!("A{joint}") } else { format!("joint_{joint}") };
-        let mut head: Vec<String> = (1..=self.slides.len()).map(name).collect();
         // Other columns are skipped.
-        head.insert(0, "speed_override".to_owned());
-        if self.period_ms.is_none() {
-            head.push("clock".to_owned());
-        }
-        let mut text = head.join(&self.separator.to_string()) + "\n";
-        for (t_s, q) in rows {
-            let mut cells = vec![1.0];
-            cells.extend(q.iter().zip(&self.slides).map(|(value, slides)| self.in_file(*value, *slides)));
-            if self.period_ms.is_none() {
-                cells.push(t_s / self.time_unit.1);
-            }
-            let cells: Vec<String> = cells.iter().map(|cell| self.number(*cell)).collect();
-            text += &(cells.join(&self.separator.to_string()) + "\n");
-        }
-        text
+        let mut head = vec!["speed_override".to_owned()];
+        head.extend((1..=self.slides.len()).map(name));
+        let has_times = self.period_ms.is_none();
+        head.extend(has_times.then(|| "clock".to_owned()));
+        let row = |(t_s, q): &(f64, Vec<f64>)| {
+            let mut row = vec![1.0];
+            row.extend(q.iter().zip(&self.slides).map(|(value, slides)| self.in_file(*value, *slides)));
+            row.extend(has_times.then_some(t_s / self.time_unit.1));
+            row
+        };
+        CellFile::separated("recording", self.separator, &head.join(","), rows.iter().map(row))
     }
 
     fn in_file(&self, value: f64, slides: bool) -> f64 {
@@ -111,10 +95,5 @@ impl RecordingLayout {
             (false, true) => value.to_degrees(),
             (false, false) => value,
         }
-    }
-
-    /// A number; with a decimal comma where commas do not separate.
-    fn number(&self, value: f64) -> String {
-        if self.separator == ',' { value.to_string() } else { value.to_string().replace('.', ",") }
     }
 }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use elbowroom_spatial::Rotation;
+
 use super::files::CellFile;
 use super::text::{Vector, list};
 
@@ -86,27 +88,21 @@ impl BeltSpec {
 }
 
 fn table_file(rows: &[(f64, f64)]) -> CellFile {
-    let mut text = String::from("t_s,travel_m\n");
-    for (t_s, travel_m) in rows {
-        let _ = writeln!(text, "{t_s},{travel_m}");
-    }
-    CellFile::csv("belt", text)
+    CellFile::csv("belt", "t_s,travel_m", rows.iter().map(|(t_s, travel_m)| vec![*t_s, *travel_m]))
 }
 
 fn poses_file(rows: &[PoseRow], in_quaternions: bool) -> CellFile {
-    let mut text = String::from(if in_quaternions { "t_s,x,y,z,qx,qy,qz,qw\n" } else { "t_s,x,y,z,roll,pitch,yaw\n" });
-    for PoseRow { t_s, at: [x, y, z], rpy } in rows {
-        let turn = if in_quaternions { quaternion(*rpy).to_vec() } else { rpy.to_vec() };
-        let turn: Vec<String> = turn.iter().map(f64::to_string).collect();
-        let _ = writeln!(text, "{t_s},{x},{y},{z},{}", turn.join(","));
-    }
-    CellFile::csv("poses", text)
-}
-
-/// The quaternion x, y, z, w of rotations about x, then y, then z.
-fn quaternion(rpy: Vector) -> [f64; 4] {
-    let [(sr, cr), (sp, cp), (sy, cy)] = rpy.map(|angle| (angle / 2.0).sin_cos());
-    [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy]
+    let turn = if in_quaternions { "qx,qy,qz,qw" } else { "roll,pitch,yaw" };
+    let row = |PoseRow { t_s, at, rpy: [roll, pitch, yaw] }: &PoseRow| {
+        let mut row = [&[*t_s], &at[..]].concat();
+        if in_quaternions {
+            row.extend(Rotation::from_rpy(*roll, *pitch, *yaw).to_quaternion_xyzw());
+        } else {
+            row.extend([roll, pitch, yaw]);
+        }
+        row
+    };
+    CellFile::csv("poses", &format!("t_s,x,y,z,{turn}"), rows.iter().map(row))
 }
 
 impl RegionSpec {
