@@ -1,6 +1,6 @@
 //! Figures of the forces that a guided tool feels: their curves are the functions of `shared_control::force`.
 
-use elbowroom_cell::shared_control::force::{Aureole, BodySettings, Field, FieldSample, ForceLaw, VirtualBody};
+use elbowroom_cell::shared_control::force::{Aureole, BodySettings, FieldSample, ForceLaw, ForceProfile, VirtualBody};
 use elbowroom_spatial::Vec3;
 
 use super::curves::{curve, distance, over};
@@ -9,12 +9,12 @@ use super::svg::{Axis, Dash, Plot};
 const MM: f64 = 1000.0;
 /// Range and stiffness of the laws in the figures.
 const SPRING: ForceLaw =
-    ForceLaw { field: Field::Linear, range_m: 0.04, stiffness_n_m: 1000.0, damping_n_s_m: 0.0, aureole: None };
+    ForceLaw { field: ForceProfile::Linear, range_m: 0.04, stiffness_n_m: 1000.0, damping_n_s_m: 0.0, aureole: None };
 
 /// Force against distance.
 pub fn laws() -> Plot {
     let force = |law: ForceLaw, speed: f64| move |d: f64| law.force_n(d / MM, law.range_at(speed));
-    let khatib = ForceLaw { field: Field::Khatib, ..SPRING };
+    let khatib = ForceLaw { field: ForceProfile::Khatib, ..SPRING };
     let growing = ForceLaw { aureole: Some(Aureole { reaction_s: 0.05, deceleration_m_s2: 2.0 }), ..SPRING };
     let curves = vec![
         curve("repulsive", 0, Dash::Solid, over(0.0, 80.0, force(SPRING, 0.0))),

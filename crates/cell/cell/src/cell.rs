@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use elbowroom_avoidance::{AvoiderSettings, Rules};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::{ChainState, JointLimits, LinkId};
-use elbowroom_monitor::{Grid, Laws, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
+use elbowroom_monitor::{Laws, OutputGrid, Part, Presence, Region, SourceLimits, Volume, VolumeModel, arm_volumes};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{ObjectId, Robot, RobotId};
 use elbowroom_scene::{Object, PairRules};
@@ -237,7 +237,7 @@ pub struct CellGrid {
     /// Line of its table.
     pub line: usize,
     /// Grid of the robot's monitor.
-    pub grid: Grid,
+    pub grid: OutputGrid,
 }
 
 /// Settings of the joint-space map of a robot.

@@ -2,7 +2,7 @@
 
 use crate::common::{HEAD, rail};
 use elbowroom_cell::{Cell, configure};
-use elbowroom_monitor::{Grid, GridAxis, GridSpace, Monitor, Snapshot};
+use elbowroom_monitor::{GridSpace, Monitor, OutputGrid, OutputGridAxis, Snapshot};
 use elbowroom_spatial::Vec3;
 
 const BOX: &str = "[grid.area]\nfrom = [600, -200, 400]\nto = [-400, 200, -400]\ncells = [5, 2, 1]\noutput = 4\n";
@@ -11,7 +11,7 @@ fn cell(text: &str) -> Cell {
     Cell::parse("test.toml", &format!("{HEAD}{}{text}", rail("a", 0.0))).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn grids(text: &str) -> Vec<Grid> {
+fn grids(text: &str) -> Vec<OutputGrid> {
     configure::setups(&cell(text)).unwrap()[0].configuration.grids().to_vec()
 }
 
@@ -51,9 +51,9 @@ fn a_box_is_placed_as_a_region_of_the_same_corners_is() {
 fn joints_have_their_limits_and_the_units_of_the_file() {
     let whole = grids("[grid.g]\njoints = [\"joint_1\"]\ncells = [4]\noutput = 0\n");
     let joint = &cell("").robots[0].robot.chain;
-    assert_eq!(whole[0].axes, [GridAxis { from: joint.lower()[0], to: joint.upper()[0], count: 4 }]);
+    assert_eq!(whole[0].axes, [OutputGridAxis { from: joint.lower()[0], to: joint.upper()[0], count: 4 }]);
     let part = "[grid.g]\njoints = [\"joint_1\"]\nfrom = [100]\nto = [700]\ncells = [4]\noutput = 0\nhysteresis = 5\n";
-    assert_eq!(grids(part)[0].axes, [GridAxis { from: 0.1, to: 0.7, count: 4 }]);
+    assert_eq!(grids(part)[0].axes, [OutputGridAxis { from: 0.1, to: 0.7, count: 4 }]);
     assert_eq!((grids(part)[0].hysteresis, &grids(part)[0].space), (0.005, &GridSpace::Joints(vec![0])));
 }
 

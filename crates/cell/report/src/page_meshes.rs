@@ -7,7 +7,7 @@ use elbowroom_spatial::{Aabb, Vec3};
 use serde_json::{Value, json};
 
 use crate::packing::ArrayPacker;
-use crate::region_surface::Surface;
+use crate::region_surface::SurfaceMesh;
 
 /// Levels along the longest side of a mesh that is only drawn.
 const DRAWN_LEVELS: f64 = 16_384.0;
@@ -35,7 +35,7 @@ pub struct PageMeshes {
 
 impl PageMeshes {
     /// Index of the mesh in [`Self::entries`].
-    pub fn add(&mut self, packer: &mut ArrayPacker, (vertices, triangles): &Surface, used: MeshUse) -> usize {
+    pub fn add(&mut self, packer: &mut ArrayPacker, (vertices, triangles): &SurfaceMesh, used: MeshUse) -> usize {
         let (corners, index) = welded(vertices, triangles);
         let key = (used, corners.iter().map(|v| v.to_array().map(f64::to_bits)).collect(), index);
         if let Some(known) = self.known.get(&key) {

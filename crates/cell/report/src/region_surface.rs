@@ -12,7 +12,7 @@ use elbowroom_spatial::{Pose, Vec3};
 type Edge = (u32, u32);
 
 /// Vertices and triangles.
-pub type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
+pub type SurfaceMesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
 const CHORD_ERROR_M: f64 = 1e-3;
 /// Distance within which vertices are merged, m.
@@ -24,7 +24,7 @@ const PATCH_DEPTH_M: f64 = 0.05;
 
 /// The region's surface in the shape's frame. A plane is a thin patch; of what surrounds a solid that robots must not
 /// leave, it is the inner side.
-pub fn solid(shape: &Shape) -> Surface {
+pub fn solid(shape: &Shape) -> SurfaceMesh {
     match shape {
         Shape::HalfSpace(_) => slab(-PATCH_DEPTH_M, 0.0),
         Shape::Mesh(mesh) if let Some(inner) = cavity(mesh) => inner,
@@ -36,7 +36,7 @@ pub fn solid(shape: &Shape) -> Surface {
 ///
 /// For a convex shape the vertices are exact: the support point of each direction, moved along that direction (the
 /// Minkowski sum with a ball). The vertices of a mesh move along their normals.
-pub fn warning(shape: &Shape, warning_m: f64) -> Option<Surface> {
+pub fn warning(shape: &Shape, warning_m: f64) -> Option<SurfaceMesh> {
     if !(warning_m > 0.0 && warning_m.is_finite()) {
         return None;
     }
@@ -51,7 +51,7 @@ pub fn warning(shape: &Shape, warning_m: f64) -> Option<Surface> {
     })
 }
 
-fn slab(z0: f64, z1: f64) -> Surface {
+fn slab(z0: f64, z1: f64) -> SurfaceMesh {
     let shape =
         Shape::Cuboid(elbowroom_proximity::Cuboid { half_extents: Vec3::new(PATCH_M, PATCH_M, 0.5 * (z1 - z0)) });
     let (mut vertices, triangles) = tessellate(&shape, CHORD_ERROR_M);
@@ -62,7 +62,7 @@ fn slab(z0: f64, z1: f64) -> Surface {
 }
 
 /// Directions on a sphere, each mapped to the support point of the inflated shape.
-fn inflated(shape: &Shape, margin: f64) -> Surface {
+fn inflated(shape: &Shape, margin: f64) -> SurfaceMesh {
     const AROUND: usize = 96;
     const RINGS: usize = 49; // odd: one ring just above and one just below the equator, so flat sides stay flat
     let direction = |ring: usize, step: usize| {
@@ -96,7 +96,7 @@ fn inflated(shape: &Shape, margin: f64) -> Surface {
     (vertices, triangles)
 }
 
-fn offset_along_normals(vertices: &[Vec3], triangles: &[[u32; 3]], margin: f64) -> Surface {
+fn offset_along_normals(vertices: &[Vec3], triangles: &[[u32; 3]], margin: f64) -> SurfaceMesh {
     let mut normals = vec![Vec3::ZERO; vertices.len()];
     for t in triangles {
         let [a, b, c] = t.map(|i| vertices[i as usize]);
@@ -112,7 +112,7 @@ fn offset_along_normals(vertices: &[Vec3], triangles: &[[u32; 3]], margin: f64) 
 /// Closed curves (x, y) in which a surface intersects the horizontal plane at `height_m`, both in the world.
 ///
 /// An open surface gives open curves.
-pub fn section(surface: &Surface, in_world: &Pose, height_m: f64) -> Vec<Vec<[f64; 2]>> {
+pub fn section(surface: &SurfaceMesh, in_world: &Pose, height_m: f64) -> Vec<Vec<[f64; 2]>> {
     let welded = merge_targets(&surface.0, SAME_VERTEX_M);
     let points: Vec<Vec3> = surface.0.iter().map(|&v| in_world.transform_point(v)).collect();
     let above = |i: u32| points[i as usize].z >= height_m;

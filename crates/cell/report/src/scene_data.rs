@@ -106,7 +106,7 @@ impl<'a> From<&'a CellRegion> for PageRegion<'a> {
 }
 
 impl Pack<'_> {
-    fn mesh(&mut self, surface: &region_surface::Surface, used: MeshUse) -> usize {
+    fn mesh(&mut self, surface: &region_surface::SurfaceMesh, used: MeshUse) -> usize {
         self.meshes.add(self.packer, surface, used)
     }
 

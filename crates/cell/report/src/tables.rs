@@ -30,7 +30,7 @@ pub fn escape(text: &str) -> String {
 /// One row per robot: its outcome and the effect of the monitor.
 pub fn robots(recording: &Recording) -> String {
     let names = ["robot", "outcome", "time stopped", "smallest override", "collisions"];
-    let mut table = Table::new("How the programs ended", &names);
+    let mut table = HtmlTable::new("How the programs ended", &names);
     for robot in &recording.robots {
         let outcome = crate::summary::outcome(robot, recording);
         let hits = match robot.collisions.first() {
@@ -56,7 +56,7 @@ pub fn regions(recording: &Recording, planned: Option<&Recording>) -> String {
     if planned.is_some() {
         names.push("without monitor");
     }
-    let mut table = Table::new("How close the robots came", &names);
+    let mut table = HtmlTable::new("How close the robots came", &names);
     for (index, region) in recording.regions.iter().enumerate() {
         let life = if region.life == Life::Temporary { ", temporary" } else { "" };
         let mut cells = vec![
@@ -88,7 +88,7 @@ fn chip(color: &str, name: &str) -> String {
 /// One row per stop of any robot.
 pub fn stops(recording: &Recording) -> Option<String> {
     let names = ["robot", "from", "to", "stood", "before", "distance", "closest part", "its point (m)"];
-    let mut table = Table::new("Where the monitor held a robot", &names);
+    let mut table = HtmlTable::new("Where the monitor held a robot", &names);
     let all: Vec<(&str, &Stop)> =
         recording.robots.iter().flat_map(|r| r.stops.iter().map(|s| (r.name.as_str(), s))).collect();
     for (robot, stop) in all.iter().take(MAX_EVENTS) {
@@ -111,7 +111,7 @@ pub fn stops(recording: &Recording) -> Option<String> {
 
 /// One row per event, the first [`MAX_EVENTS`].
 pub fn events(recording: &Recording) -> String {
-    let mut table = Table::new("In order of time", &["time", "robot", "region", "event"]);
+    let mut table = HtmlTable::new("In order of time", &["time", "robot", "region", "event"]);
     for e in recording.events.iter().take(MAX_EVENTS) {
         table.row(&[format!("{:.3} s", e.t_s), e.robot.clone(), e.region.clone(), e.event.name().into()], "");
     }
@@ -127,14 +127,14 @@ pub fn events(recording: &Recording) -> String {
 }
 
 /// A table in HTML. Each cell has the name of its column, because narrow screens show a row as a list.
-pub struct Table<'a> {
+struct HtmlTable<'a> {
     names: &'a [&'a str],
     html: String,
 }
 
-impl<'a> Table<'a> {
+impl<'a> HtmlTable<'a> {
     /// Creates a table with a caption and the names of its columns.
-    pub fn new(caption: &str, names: &'a [&'a str]) -> Self {
+    fn new(caption: &str, names: &'a [&'a str]) -> Self {
         let heads = names.join("</th><th scope=\"col\">");
         let html =
             format!("<table><caption>{caption}</caption><thead><tr><th scope=\"col\">{heads}</th></tr></thead><tbody>");
@@ -142,7 +142,7 @@ impl<'a> Table<'a> {
     }
 
     /// Adds a row of plain texts, with a class.
-    pub fn row(&mut self, cells: &[String], class: &str) {
+    fn row(&mut self, cells: &[String], class: &str) {
         let cells: Vec<String> = cells.iter().map(|c| escape(c)).collect();
         self.row_of_html(&cells, class);
     }
@@ -156,7 +156,7 @@ impl<'a> Table<'a> {
     }
 
     /// Completes the table and returns it.
-    pub fn end(self) -> String {
+    fn end(self) -> String {
         self.html + "</tbody></table>"
     }
 }

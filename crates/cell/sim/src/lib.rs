@@ -52,10 +52,10 @@ pub use operator_summary::OperatorSummary;
 pub use playback::playback;
 pub use recording::{
     AvoidanceSample, AvoidanceTrack, Collision, Deadlock, Evasion, EventRow, ForceSample, GoverningPoint,
-    GuidanceSample, GuidanceState, GuidanceTrack, HandOverRecord, Hold, HoldReason, ObjectTrack, Outcome, PartKind,
-    PathReplan, PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord, RobotEnding,
-    RobotTrack, RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, ViewTrack, VirtualRobotSample,
-    VirtualRobotTrack, WorkPieceStop,
+    GuidanceSample, GuidanceState, GuidanceTrack, HandOverRecord, HeldPeriod, HoldReason, ObjectTrack, Outcome,
+    PartKind, PathReplan, PerceptionTrack, RecordedRegionKind, Recording, RegionPoses, RegionTrack, ReplanRecord,
+    RobotEnding, RobotTrack, RunEnd, RunEvent, Sample, SensorTrack, Span, Stop, TickTimes, ViewTrack,
+    VirtualRobotSample, VirtualRobotTrack, WorkPieceStop,
 };
 pub use run::{InputFault, InputFaultKind, RunOptions, RunOutcome, SilentFrom, simulate};
 pub use starts::check_starts;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::operator_summary::OperatorSummary;
 use crate::recording::{
-    AvoidanceSample, AvoidanceTrack, Evasion, Hold, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
+    AvoidanceSample, AvoidanceTrack, Evasion, HeldPeriod, HoldReason, ObjectTrack, Outcome, PartKind, PerceptionTrack,
     RecordedRegionKind, Recording, RobotEnding, RunEnd, SensorTrack, Stop, TickTimes,
 };
 use crate::virtual_robot_summary::VirtualRobotSummary;
@@ -184,7 +184,7 @@ impl From<&PerceptionTrack> for PerceptionSummary {
         let count = |in_motion| track.replans.iter().filter(|r| r.in_motion == in_motion).count();
         let time =
             |reason| track.holds.iter().filter(|h| h.reason == reason).fold(0.0, |sum, h| sum + h.to_s - h.from_s);
-        let hold = |h: &Hold| HoldSummary { from_s: h.from_s, to_s: h.to_s, reason: h.reason, by: h.by.clone() };
+        let hold = |h: &HeldPeriod| HoldSummary { from_s: h.from_s, to_s: h.to_s, reason: h.reason, by: h.by.clone() };
         Self {
             replans_in_motion: count(Some(true)),
             replans_from_rest: count(Some(false)),

@@ -82,7 +82,7 @@ pub use node::Node;
 pub use region_journal::region_journal_of;
 pub use region_keeper::{ProgramSwitches, RegionKeeper, SwitchRequest};
 pub use regions_table::{RegionTable, RegionTableMessage};
-pub use sensors::FrameSource;
+pub use sensors::FrameInput;
 pub use service::Service;
 pub use service_error::ServiceError;
 pub use service_options::{DEFAULT_ADDRESS, ServiceOptions};

@@ -8,7 +8,7 @@ use elbowroom_view::http::Endpoint;
 use crate::control::ControlOptions;
 use crate::event_handler::EventHandler;
 use crate::ros2::Ros2Settings;
-use crate::sensors::FrameSource;
+use crate::sensors::FrameInput;
 
 /// Default address of a service.
 pub const DEFAULT_ADDRESS: &str = "127.0.0.1:7447";
@@ -34,7 +34,7 @@ pub struct ServiceOptions {
     /// Runs the programs of the cell file in place of the controllers.
     pub simulate: bool,
     /// Sensors whose pictures do not come from the folder of the cell file, and where they come from instead.
-    pub frames: Vec<(String, FrameSource)>,
+    pub frames: Vec<(String, FrameInput)>,
     /// Endpoint at which the cell is shown in a browser.
     pub web: Option<Endpoint>,
     /// Records everything that this process guards into this file.

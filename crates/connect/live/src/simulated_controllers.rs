@@ -20,7 +20,7 @@ use crate::event_handler::EventHandler;
 use crate::keys::Keys;
 use crate::locked::locked;
 use crate::network::{Network, Publisher, Subscription, Urgency};
-use crate::sensors::{FrameSource, GuardedProgram, GuardedPrograms, SensorGuards};
+use crate::sensors::{FrameInput, GuardedProgram, GuardedPrograms, SensorGuards};
 use crate::service_error::ServiceError;
 use crate::switch_requests::SwitchRequests;
 
@@ -42,7 +42,7 @@ impl SimulatedControllers {
     pub(crate) fn start(
         cell: &Arc<Cell>,
         robots: &[RobotId],
-        frames: &[(String, FrameSource)],
+        frames: &[(String, FrameInput)],
         (network, of_controllers): (&Arc<dyn Network>, &Arc<dyn Network>),
         (clock, on_event): (Clock, Option<EventHandler>),
     ) -> Result<Self, ServiceError> {
@@ -80,7 +80,7 @@ impl Drop for SimulatedControllers {
 /// What the controllers start with.
 struct Start {
     cell: Arc<Cell>,
-    frames: Vec<(String, FrameSource)>,
+    frames: Vec<(String, FrameInput)>,
     network: Arc<dyn Network>,
     of_controllers: Arc<dyn Network>,
     clock: Clock,

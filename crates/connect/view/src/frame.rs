@@ -5,7 +5,7 @@ use serde::Serialize;
 
 /// State of the cell at one instant.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Frame {
+pub struct ViewFrame {
     /// Number of the frame, which increases.
     pub number: u64,
     /// Time since the service started, s.
@@ -64,7 +64,7 @@ pub struct RegionDistance {
     pub points_m: [[f64; 3]; 2],
 }
 
-impl Frame {
+impl ViewFrame {
     /// Makes a frame without the nearest pair of all.
     pub(crate) fn of(status: CellStatus, robots: Vec<FrameRobot>) -> Self {
         let CellStatus { t_s, objects, slots, .. } = status;

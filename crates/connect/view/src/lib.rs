@@ -44,6 +44,6 @@ mod source;
 
 pub use error::ViewError;
 pub use feed::StatusFeed;
-pub use frame::{Frame, FrameRobot, PairSeparation, RegionDistance};
+pub use frame::{FrameRobot, PairSeparation, RegionDistance, ViewFrame};
 pub use server::Server;
-pub use settings::{Limits, ServerSettings};
+pub use settings::{ClientLimits, ServerSettings};

@@ -11,12 +11,12 @@ pub struct ServerSettings {
     /// Endpoint at which it serves.
     pub endpoint: Endpoint,
     /// Limits of the clients.
-    pub limits: Limits,
+    pub limits: ClientLimits,
 }
 
 /// Limits of a server's clients. A client beyond a limit is refused or closed, without effect on the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub struct ClientLimits {
     /// Connections that are not yet browsers with a token. One more closes the oldest of them.
     pub connections: usize,
     /// Browsers with a token. One more is refused.
@@ -39,7 +39,7 @@ pub struct Limits {
     pub unshown_frames: usize,
 }
 
-impl Default for Limits {
+impl Default for ClientLimits {
     fn default() -> Self {
         Self {
             connections: 256,
@@ -56,7 +56,7 @@ impl Default for Limits {
     }
 }
 
-impl Limits {
+impl ClientLimits {
     /// Limits of connections without a token.
     pub(crate) fn of_connections(&self) -> ConnectionLimits {
         let Self { connections, head, request, head_bytes, .. } = *self;
@@ -67,7 +67,7 @@ impl Limits {
 impl ServerSettings {
     /// Creates settings with the default limits.
     pub fn new(endpoint: Endpoint) -> Self {
-        Self { endpoint, limits: Limits::default() }
+        Self { endpoint, limits: ClientLimits::default() }
     }
 
     /// Creates settings without encryption, for the value of an option: `127.0.0.1:8080`, `localhost:8080`,

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::common::{Page, cell, limits, settings};
 use elbowroom_status::{CellStatus, EventStatus, RobotStatus};
-use elbowroom_view::{Limits, Server, ServerSettings, StatusFeed};
+use elbowroom_view::{ClientLimits, Server, ServerSettings, StatusFeed};
 use serde_json::json;
 
 fn status(t_s: f64) -> CellStatus {
@@ -60,7 +60,7 @@ fn a_page_that_does_not_read_delays_neither_publisher_nor_other_pages() {
     const STATUSES: usize = 20_000;
     // Without the limit on unshown frames the network's buffers fill up, so that the server can no longer send.
     let settings = ServerSettings {
-        limits: Limits { unshown_frames: usize::MAX, frame_period: Duration::ZERO, ..limits() },
+        limits: ClientLimits { unshown_frames: usize::MAX, frame_period: Duration::ZERO, ..limits() },
         ..settings()
     };
     let feed = StatusFeed::new();

@@ -9,7 +9,7 @@ use crate::common::{Page, answer, cell, get, limits, open, settings, status, tok
 use elbowroom_testkit::certificate::write_certificate;
 use elbowroom_testkit::random::split_mix;
 use elbowroom_view::http::{Endpoint, TlsClient, TlsIdentity};
-use elbowroom_view::{Limits, Server, ServerSettings};
+use elbowroom_view::{ClientLimits, Server, ServerSettings};
 use serde_json::json;
 use tungstenite::Message;
 use tungstenite::client::IntoClientRequest as _;
@@ -224,7 +224,8 @@ fn a_thousand_hanging_connections_keep_nobody_out() {
 #[test]
 fn a_websocket_is_as_old_as_its_connection() {
     let long = Duration::from_secs(10);
-    let two = ServerSettings { limits: Limits { connections: 2, head: long, request: long, ..limits() }, ..settings() };
+    let two =
+        ServerSettings { limits: ClientLimits { connections: 2, head: long, request: long, ..limits() }, ..settings() };
     let server = Server::jog(&cell(), two).unwrap();
     let address = server.address();
     let connect = || {
@@ -253,7 +254,7 @@ fn a_websocket_is_as_old_as_its_connection() {
 
 #[test]
 fn more_browsers_than_allowed_are_refused_with_a_reason() {
-    let few = ServerSettings { limits: Limits { browsers: 2, ..limits() }, ..settings() };
+    let few = ServerSettings { limits: ClientLimits { browsers: 2, ..limits() }, ..settings() };
     let server = Server::jog(&cell(), few).unwrap();
     let (mut one, two) = (Page::of(&server), Page::of(&server));
     let mut three = Page::nameless(&server);

@@ -3,7 +3,7 @@
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_spatial::Pose;
 
-use crate::{Grid, Laws, Region, RegionId, RegionKind, SourceSpec, Volume};
+use crate::{Laws, OutputGrid, Region, RegionId, RegionKind, SourceSpec, Volume};
 
 /// The parts of a [`Configuration`]; [`Configuration::new`] validates them.
 #[derive(Debug, Clone)]
@@ -24,7 +24,7 @@ pub struct ConfigurationParts {
     /// The laws.
     pub laws: Laws,
     /// The grids whose occupied cell is on digital outputs.
-    pub grids: Vec<Grid>,
+    pub grids: Vec<OutputGrid>,
 }
 
 /// One robot, its guarded volumes and the regions that apply to it. Valid by construction; [`Configuration::edit`], which
@@ -46,7 +46,7 @@ pub struct Configuration {
     pub(crate) regions: Vec<Region>,
     pub(crate) sources: Vec<SourceSpec>,
     pub(crate) laws: Laws,
-    pub(crate) grids: Vec<Grid>,
+    pub(crate) grids: Vec<OutputGrid>,
 }
 
 /// Why a configuration is invalid.
@@ -161,7 +161,7 @@ impl Configuration {
     }
 
     /// The grids.
-    pub fn grids(&self) -> &[Grid] {
+    pub fn grids(&self) -> &[OutputGrid] {
         &self.grids
     }
 
@@ -220,7 +220,7 @@ impl Configuration {
     }
 
     /// A grid's outputs are its own: of bits that a region or another grid raises too, nobody could read a number.
-    fn validate_grid(&self, index: usize, grid: &Grid) -> Result<(), ConfigError> {
+    fn validate_grid(&self, index: usize, grid: &OutputGrid) -> Result<(), ConfigError> {
         let bad = |why: String| ConfigError::Grid { grid: grid.name.clone(), why };
         let has_tcp = self.volumes.iter().any(|v| v.part.is_tcp());
         let turns: Vec<bool> = (0..self.chain.dof()).map(|q| self.turns(q)).collect();
@@ -237,7 +237,7 @@ impl Configuration {
                 channels.end - 1
             )));
         }
-        let of_grid = |g: &&Grid| g.channels().start < channels.end && channels.start < g.channels().end;
+        let of_grid = |g: &&OutputGrid| g.channels().start < channels.end && channels.start < g.channels().end;
         if let Some(other) = self.grids[..index].iter().find(of_grid) {
             let (name, last) = (&other.name, channels.end - 1);
             return Err(bad(format!("grid `{name}` has one of its outputs {} to {last}", channels.start)));

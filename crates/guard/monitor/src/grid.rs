@@ -18,10 +18,10 @@ const CHANNELS: u8 = 64;
 /// places i, j, k on axes with n₀, n₁, n₂ divisions. A grid informs; it holds back no robot.
 ///
 /// ```
-/// use elbowroom_monitor::{Grid, GridAxis, GridSpace};
+/// use elbowroom_monitor::{OutputGrid, OutputGridAxis, GridSpace};
 /// use elbowroom_spatial::Pose;
-/// let axis = |to: f64, count: u32| GridAxis { from: 0.0, to, count };
-/// let grid = Grid {
+/// let axis = |to: f64, count: u32| OutputGridAxis { from: 0.0, to, count };
+/// let grid = OutputGrid {
 ///     name: "area".into(),
 ///     space: GridSpace::Tcp { frame_in_world: Pose::IDENTITY },
 ///     axes: vec![axis(2.0, 4), axis(1.0, 2)],
@@ -33,20 +33,20 @@ const CHANNELS: u8 = 64;
 /// assert_eq!(grid.number_in(6 << 8 | 1), 6);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
+pub struct OutputGrid {
     /// Name, unique among the grids of a robot.
     pub name: String,
     /// What is divided.
     pub space: GridSpace,
     /// The axes in the order of the coordinates: up to three of a point, or one per joint.
-    pub axes: Vec<GridAxis>,
+    pub axes: Vec<OutputGridAxis>,
     /// The digital output with the lowest bit.
     pub output: u8,
     /// How far beyond its border a cell is left (m or rad); at most half of a cell.
     pub hysteresis: f64,
 }
 
-/// What a [`Grid`] divides.
+/// What an [`OutputGrid`] divides.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GridSpace {
     /// The coordinates (m) of the tool centre point in this frame. Axes that the grid does not have are not divided, and
@@ -60,9 +60,9 @@ pub enum GridSpace {
     Joints(Vec<usize>),
 }
 
-/// One axis of a [`Grid`]: a range in equal divisions.
+/// One axis of an [`OutputGrid`]: a range in equal divisions.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GridAxis {
+pub struct OutputGridAxis {
     /// The low end, m or rad.
     pub from: f64,
     /// The high end, m or rad.
@@ -80,7 +80,7 @@ pub(crate) struct Coordinate {
     pub(crate) turn: f64,
 }
 
-impl GridAxis {
+impl OutputGridAxis {
     /// Length of a division, m or rad.
     pub fn step(&self) -> f64 {
         (self.to - self.from) / f64::from(self.count)
@@ -100,7 +100,7 @@ impl GridAxis {
     }
 }
 
-impl Grid {
+impl OutputGrid {
     /// Most cells of a grid.
     pub const MAX_CELLS: u64 = 65_535;
 
@@ -167,8 +167,8 @@ impl Grid {
         self.space_problem(joints, has_tcp)
     }
 
-    fn axis_problem(&self, axis: &GridAxis) -> Option<String> {
-        let GridAxis { from, to, count } = axis;
+    fn axis_problem(&self, axis: &OutputGridAxis) -> Option<String> {
+        let OutputGridAxis { from, to, count } = axis;
         if !(from.is_finite() && to.is_finite() && from < to && *count > 0) {
             return Some(format!("an axis from {from} to {to} in {count} divisions"));
         }
@@ -197,7 +197,8 @@ impl Grid {
                 if let Some(j) = joints.iter().find(|j| **j >= dof) {
                     return Some(format!("joint {j} of a robot with {dof} joints"));
                 }
-                let is_long = |(j, axis): &(&usize, &GridAxis)| turns[**j] && axis.to - axis.from > TAU + ROUNDING;
+                let is_long =
+                    |(j, axis): &(&usize, &OutputGridAxis)| turns[**j] && axis.to - axis.from > TAU + ROUNDING;
                 let long = joints.iter().zip(&self.axes).find(is_long);
                 long.map(|_| {
                     "more than a turn of a joint that turns without end: its values count modulo a turn".into()
@@ -213,13 +214,13 @@ mod tests {
 
     use super::*;
 
-    fn grid(axes: Vec<GridAxis>, hysteresis: f64) -> Grid {
+    fn grid(axes: Vec<OutputGridAxis>, hysteresis: f64) -> OutputGrid {
         let space = GridSpace::Tcp { frame_in_world: Pose::IDENTITY };
-        Grid { name: "g".into(), space, axes, output: 0, hysteresis }
+        OutputGrid { name: "g".into(), space, axes, output: 0, hysteresis }
     }
 
     /// The cell whose box holds the point, by testing all of them.
-    fn by_all_boxes(grid: &Grid, p: &[f64]) -> Vec<u32> {
+    fn by_all_boxes(grid: &OutputGrid, p: &[f64]) -> Vec<u32> {
         let holds = |number: &u32| {
             let mut rest = number - 1;
             grid.axes.iter().zip(p).all(|(axis, x)| {
@@ -238,7 +239,11 @@ mod tests {
         for _ in 0..200 {
             let axis = |random: &mut SplitMix| {
                 let from = random.between(-2.0, 1.0);
-                GridAxis { from, to: from + random.between(0.1, 3.0), count: 1 + (random.between(0.0, 6.0) as u32) }
+                OutputGridAxis {
+                    from,
+                    to: from + random.between(0.1, 3.0),
+                    count: 1 + (random.between(0.0, 6.0) as u32),
+                }
             };
             let grid = grid((0..3).map(|_| axis(&mut random)).collect(), 0.0);
             for _ in 0..50 {
@@ -251,7 +256,7 @@ mod tests {
 
     #[test]
     fn a_point_that_trembles_at_a_border_keeps_its_cell_and_leaves_it_beyond_the_hysteresis() {
-        let grid = grid(vec![GridAxis { from: 0.0, to: 1.0, count: 2 }], 0.01);
+        let grid = grid(vec![OutputGridAxis { from: 0.0, to: 1.0, count: 2 }], 0.01);
         let mut cell = 0;
         let mut at = |x: f64| {
             cell = grid.cell_at(&[x], cell);
@@ -267,7 +272,7 @@ mod tests {
     #[test]
     fn the_ends_of_a_turn_are_a_border_like_others() {
         let half = std::f64::consts::PI;
-        let grid = grid(vec![GridAxis { from: -half, to: half, count: 8 }], 0.01);
+        let grid = grid(vec![OutputGridAxis { from: -half, to: half, count: 8 }], 0.01);
         let mut cell = 0;
         let mut at = |x: f64| {
             cell = grid.cell([Coordinate { at: x, turn: TAU }].into_iter(), cell);
@@ -279,8 +284,8 @@ mod tests {
                 [5, 8, 8, 1, 1]
             );
         }
-        let long = Grid { axes: vec![GridAxis { from: -half, to: 3.0 * half, count: 8 }], ..grid };
-        let long = Grid { space: GridSpace::Joints(vec![0]), ..long };
+        let long = OutputGrid { axes: vec![OutputGridAxis { from: -half, to: 3.0 * half, count: 8 }], ..grid };
+        let long = OutputGrid { space: GridSpace::Joints(vec![0]), ..long };
         assert!(long.problem(&[true], true).is_some_and(|why| why.contains("more than a turn")));
         assert_eq!(long.problem(&[false], true), None);
     }
@@ -289,7 +294,7 @@ mod tests {
     #[test]
     fn impossible_grids_do_not_panic() {
         for (count, axes) in [(0, 1), (0, 3), (u32::MAX, 1), (u32::MAX, 3)] {
-            let grid = Grid { output: 40, ..grid(vec![GridAxis { from: 0.0, to: 1.0, count }; axes], 0.0) };
+            let grid = OutputGrid { output: 40, ..grid(vec![OutputGridAxis { from: 0.0, to: 1.0, count }; axes], 0.0) };
             for former in [0, 1, 77, u32::MAX] {
                 grid.cell_at(&[0.9; 3], former);
                 grid.cell_at(&[f64::NAN; 2], former);
@@ -302,7 +307,7 @@ mod tests {
     #[test]
     fn each_number_has_its_bits() {
         for count in 1..40 {
-            let grid = Grid { output: 20, ..grid(vec![GridAxis { from: 0.0, to: 1.0, count }], 0.0) };
+            let grid = OutputGrid { output: 20, ..grid(vec![OutputGridAxis { from: 0.0, to: 1.0, count }], 0.0) };
             let bits = grid.channels().len() as u32;
             assert!(u64::from(count) < 1 << bits && u64::from(count) >= 1 << (bits - 1), "{count} in {bits} bits");
             for number in 0..=count {

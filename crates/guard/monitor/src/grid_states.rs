@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::grid::Coordinate;
 use crate::placement::Placement;
-use crate::{Configuration, Grid, GridSpace};
+use crate::{Configuration, GridSpace, OutputGrid};
 
 /// The present cell of each grid of a monitor.
 #[derive(Debug)]
@@ -38,7 +38,7 @@ impl GridStates {
 }
 
 /// The cell of the robot; 0 if no tool is mounted.
-fn cell_of(grid: &Grid, config: &Configuration, now: &Placement, former: u32) -> u32 {
+fn cell_of(grid: &OutputGrid, config: &Configuration, now: &Placement, former: u32) -> u32 {
     match &grid.space {
         GridSpace::Tcp { frame_in_world } => {
             let Some(tcp) = now.tcp() else { return 0 };

@@ -103,7 +103,7 @@ pub use elbowroom_interlock::{
 };
 pub use elbowroom_proximity::VolumeModel;
 pub use event::{Event, EventKind};
-pub use grid::{Grid, GridAxis, GridSpace};
+pub use grid::{GridSpace, OutputGrid, OutputGridAxis};
 pub use guarded_monitor::{GuardedMonitor, NotObeyed};
 pub use laws::{Laws, StoppingSettings};
 pub use monitor::Monitor;

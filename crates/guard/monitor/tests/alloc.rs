@@ -11,8 +11,9 @@ use elbowroom_interlock::wire::{MAX_BYTES, decode_state, encode_grants};
 use elbowroom_interlock::{Arbiter, ArbiterSettings, Boot, Micros, RobotSettings, StateMessage};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
-    AccessClass, Configuration, ConfigurationParts, EventKind, Grid, GridAxis, GridSpace, Laws, Life, Monitor,
-    OverrideReason, Region, RegionKind, RobotSlot, SlotId, Snapshot, StoppingSettings, Volume, VolumeId, ZoneArbiter,
+    AccessClass, Configuration, ConfigurationParts, EventKind, GridSpace, Laws, Life, Monitor, OutputGrid,
+    OutputGridAxis, OverrideReason, Region, RegionKind, RobotSlot, SlotId, Snapshot, StoppingSettings, Volume,
+    VolumeId, ZoneArbiter,
 };
 use elbowroom_proximity::{Shape, Sphere};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -80,10 +81,11 @@ fn main() {
 }
 
 /// A grid of the working area, and one of two joints.
-fn grids() -> Vec<Grid> {
-    let axis = |count: u32| GridAxis { from: -1.0, to: 1.0, count };
+fn grids() -> Vec<OutputGrid> {
+    let axis = |count: u32| OutputGridAxis { from: -1.0, to: 1.0, count };
     let tcp = GridSpace::Tcp { frame_in_world: Pose::IDENTITY };
-    let grid = |name: &str, space, axes, output| Grid { name: name.into(), space, axes, output, hysteresis: 1e-3 };
+    let grid =
+        |name: &str, space, axes, output| OutputGrid { name: name.into(), space, axes, output, hysteresis: 1e-3 };
     vec![
         grid("area", tcp, vec![axis(10), axis(10), axis(10)], 0),
         grid("sector", GridSpace::Joints(vec![0, 2]), vec![axis(20), axis(20)], 32),

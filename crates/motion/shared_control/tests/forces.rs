@@ -2,7 +2,7 @@
 
 use elbowroom_shared_control::NavigatorError;
 use elbowroom_shared_control::force::{
-    BodySettings, Field, FieldSample, ForceLaw, ImpedancePort, ImpedanceSettings, VirtualBody,
+    BodySettings, FieldSample, ForceLaw, ForceProfile, ImpedancePort, ImpedanceSettings, VirtualBody,
 };
 use elbowroom_spatial::Vec3;
 use elbowroom_testkit::random::SplitMix;
@@ -20,7 +20,7 @@ struct World {
 impl World {
     fn random(random: &mut SplitMix) -> Self {
         let ball = |random: &mut SplitMix| {
-            let field = if random.unit() < 0.5 { Field::Linear } else { Field::Khatib };
+            let field = if random.unit() < 0.5 { ForceProfile::Linear } else { ForceProfile::Khatib };
             let law = ForceLaw {
                 field,
                 damping_n_s_m: 200.0 * random.unit(),
@@ -49,8 +49,8 @@ impl World {
                 return 0.0;
             }
             match law.field {
-                Field::Linear => 0.5 * k * (r - d) * (r - d),
-                Field::Khatib => {
+                ForceProfile::Linear => 0.5 * k * (r - d) * (r - d),
+                ForceProfile::Khatib => {
                     let (eta, c) = (k * r.powi(4) / 8.0, d.max(r / 8.0));
                     let largest = eta * (8.0 / r - 1.0 / r) * 64.0 / (r * r);
                     0.5 * eta * (1.0 / c - 1.0 / r).powi(2) + largest * (r / 8.0 - d).max(0.0)

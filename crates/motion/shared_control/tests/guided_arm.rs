@@ -4,7 +4,7 @@ use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_scene::{Checker, CheckerOptions, Scene, SceneState, Selection};
 use elbowroom_shared_control::force::{
-    ArmField, ArmForces, Aureole, BodySettings, Field, FieldPair, ForceLaw, Response, VirtualBody,
+    ArmField, ArmForces, Aureole, BodySettings, FieldPair, ForceLaw, ForceProfile, Response, VirtualBody,
 };
 use elbowroom_shared_control::{ArmLimit, GuidedArm, Limit, NavigatorError, NavigatorSettings, SurfaceNavigator};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -231,7 +231,7 @@ fn a_moving_tool_stops_at_a_pose_that_is_no_number() {
 fn a_whole_arm_in_a_field_makes_no_energy_and_keeps_its_gap() {
     let (scene, start) = scene(Some(0.05));
     let aureole = Some(Aureole { reaction_s: 0.05, deceleration_m_s2: 5.0 });
-    let law = ForceLaw { aureole, field: Field::Khatib, ..ForceLaw::spring(0.03, 8000.0) };
+    let law = ForceLaw { aureole, field: ForceProfile::Khatib, ..ForceLaw::spring(0.03, 8000.0) };
     let (robot, work) = (Selection::Robot(RobotId(0)), Selection::Object(ObjectId(0)));
     let mut arm = in_field(&scene, start, FieldPair::Scene(robot, work), law);
     let mut random = SplitMix(9);

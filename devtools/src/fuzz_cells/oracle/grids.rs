@@ -108,7 +108,7 @@ impl Place<'_> {
     /// Whether the coordinates are in a cell, or at most `beyond` off it, in any turn.
     fn is_in(&self, coordinates: &[f64], number: u64, beyond: f64) -> bool {
         let mut rest = number - 1;
-        let is_in = |(k, axis): (usize, &elbowroom_monitor::GridAxis)| {
+        let is_in = |(k, axis): (usize, &elbowroom_monitor::OutputGridAxis)| {
             let count = u64::from(axis.count);
             let (place, width) = ((rest % count) as f64, (axis.to - axis.from) / count as f64);
             rest /= count;

@@ -3,7 +3,9 @@
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
 use elbowroom_robot::ObjectId;
-use elbowroom_shared_control::force::{Aureole, BodySettings, Field, ForceLaw, ImpedancePort, ImpedanceSettings};
+use elbowroom_shared_control::force::{
+    Aureole, BodySettings, ForceLaw, ForceProfile, ImpedancePort, ImpedanceSettings,
+};
 
 use super::fixture_tool::tool_of;
 use super::schema::{FORCE, names};
@@ -188,7 +190,7 @@ fn field(t: &Table<'_>, cell: &Cell, law: Law) -> Result<Option<ForceLaw>> {
     let is_growing = reaction_s > 0.0 || deceleration.is_some();
     let aureole = is_growing.then_some(Aureole { reaction_s, deceleration_m_s2: deceleration.unwrap_or(f64::MAX) });
     let law = ForceLaw {
-        field: if law == Law::Khatib { Field::Khatib } else { Field::Linear },
+        field: if law == Law::Khatib { ForceProfile::Khatib } else { ForceProfile::Linear },
         range_m,
         stiffness_n_m: stiffness(t, if law == Law::Admittance { COUPLING } else { STIFFNESS })?,
         damping_n_s_m: match law {

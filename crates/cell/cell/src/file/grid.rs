@@ -2,7 +2,7 @@
 
 use elbowroom_formats::toml_tables::{Table, Value};
 use elbowroom_formats::{Diagnostic, suggest};
-use elbowroom_monitor::{Grid, GridAxis, GridSpace, Region};
+use elbowroom_monitor::{GridSpace, OutputGrid, OutputGridAxis, Region};
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 
@@ -50,22 +50,24 @@ fn robots(t: &Table<'_>, all: &[CellRobot]) -> Result<Vec<RobotId>> {
     Ok(named)
 }
 
-fn grid(name: &str, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Grid> {
+fn grid(name: &str, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<OutputGrid> {
     let (space, ends, hysteresis) = match t.get("joints") {
         Some(v) => joints(&v, t, units, robot)?,
         None => cuboid(t, units)?,
     };
     let cells = t.need("cells", CELLS)?;
-    let counts = cells.list(CELLS)?.iter().map(|v| v.whole(1, Grid::MAX_CELLS as u32)).collect::<Result<Vec<u32>>>()?;
+    let counts =
+        cells.list(CELLS)?.iter().map(|v| v.whole(1, OutputGrid::MAX_CELLS as u32)).collect::<Result<Vec<u32>>>()?;
     if counts.len() != ends.len() {
         let what = format!("has {} numbers for {} axes", counts.len(), ends.len());
         return Err(cells.error(what).hint("one number per axis of the box or per joint; 1 leaves an axis undivided"));
     }
-    let axes = ends.iter().zip(counts).map(|([from, to], count)| GridAxis { from: *from, to: *to, count }).collect();
+    let axes =
+        ends.iter().zip(counts).map(|([from, to], count)| OutputGridAxis { from: *from, to: *to, count }).collect();
     let output = t.need("output", "output = 8")?;
-    let grid = Grid { name: name.into(), space, axes, output: output.whole(0, 63)? as u8, hysteresis };
-    if grid.cells() > Grid::MAX_CELLS {
-        let what = format!("makes {} cells, more than {}", grid.cells(), Grid::MAX_CELLS);
+    let grid = OutputGrid { name: name.into(), space, axes, output: output.whole(0, 63)? as u8, hysteresis };
+    if grid.cells() > OutputGrid::MAX_CELLS {
+        let what = format!("makes {} cells, more than {}", grid.cells(), OutputGrid::MAX_CELLS);
         return Err(cells.error(what).hint("fewer divisions, or a grid for each part"));
     }
     if grid.channels().end > 64 {
@@ -81,8 +83,8 @@ fn grid(name: &str, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<Gr
 }
 
 /// At most half of the smallest cell.
-fn check_hysteresis(grid: &Grid, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<()> {
-    let smallest = grid.axes.iter().map(GridAxis::step).fold(f64::INFINITY, f64::min);
+fn check_hysteresis(grid: &OutputGrid, t: &Table<'_>, units: Units, robot: &CellRobot) -> Result<()> {
+    let smallest = grid.axes.iter().map(OutputGridAxis::step).fold(f64::INFINITY, f64::min);
     if grid.hysteresis <= 0.5 * smallest {
         return Ok(());
     }

@@ -2,7 +2,9 @@
 
 use elbowroom_cell::{CellGrid, CellRegionId};
 use elbowroom_kinematics::{Chain, Joint, JointKind, Limits, LinkId};
-use elbowroom_monitor::{EventKind, Grid, GridAxis, GridSpace, Guards, Life, OverrideReason, RegionId, Volume};
+use elbowroom_monitor::{
+    EventKind, GridSpace, Guards, Life, OutputGrid, OutputGridAxis, OverrideReason, RegionId, Volume,
+};
 use elbowroom_proximity::{Capsule, Cuboid, Cylinder, Shape, Sphere, project_point};
 use elbowroom_report::ReportScene;
 use elbowroom_robot::{Collider, Robot, RobotId};
@@ -89,10 +91,10 @@ fn column() -> (Shape, Pose) {
 /// The stop at the column, if the run is long enough for it.
 /// A grid of boxes around the path.
 fn grid() -> CellGrid {
-    let axis = |from: f64, to: f64, count: u32| GridAxis { from, to, count };
+    let axis = |from: f64, to: f64, count: u32| OutputGridAxis { from, to, count };
     let axes = vec![axis(0.0, 1.6, 4), axis(-1.6, 1.6, 8), axis(0.0, 1.6, 1)];
     let space = GridSpace::Tcp { frame_in_world: Pose::IDENTITY };
-    let grid = Grid { name: "area".into(), space, axes, output: 8, hysteresis: 0.0 };
+    let grid = OutputGrid { name: "area".into(), space, axes, output: 8, hysteresis: 0.0 };
     CellGrid { robot: RobotId(0), line: 1, grid }
 }
 

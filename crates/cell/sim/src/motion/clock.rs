@@ -8,7 +8,7 @@ use elbowroom_kinematics::JointLimits;
 use elbowroom_kinematics::TrajectoryPoint;
 use elbowroom_robot::ObjectId;
 
-use super::{Geometry, GripAction, PlanStep, ProgramPlan};
+use super::{GripAction, MovePath, PlanStep, ProgramPlan};
 use crate::replanning::{ExecutedMotion, PathAhead, PlannedGoal, SAMPLE_S};
 
 /// Smallest fraction of the acceleration that is kept for speeding up along a curve.
@@ -172,7 +172,7 @@ impl ProgramClock {
     /// End of the current joint move; `None` for other steps, whose path must be followed.
     pub fn end_of_joint_move(&self) -> Option<Vec<f64>> {
         match self.plan.steps.get(self.step) {
-            Some(PlanStep::Move(m)) if matches!(m.geometry(), Geometry::Joint { .. }) => Some(m.end()),
+            Some(PlanStep::Move(m)) if matches!(m.geometry(), MovePath::Joint { .. }) => Some(m.end()),
             _ => None,
         }
     }

@@ -6,7 +6,7 @@ use super::TcpLine;
 
 /// The path of a move, over `s` from 0 to 1.
 #[derive(Debug)]
-pub enum Geometry {
+pub enum MovePath {
     /// Straight in joint space.
     Joint {
         /// Joint values at s = 0.
@@ -18,7 +18,7 @@ pub enum Geometry {
     TcpLine(Box<TcpLine>),
 }
 
-impl Geometry {
+impl MovePath {
     /// The joint values at `s`.
     pub fn at(&self, s: f64) -> TrajectoryPoint {
         match self {

@@ -1,6 +1,6 @@
 //! Conversion of programs to joint values over time.
 //!
-//! A [`Geometry`] is the path of a move, a [`Segment`] adds the time law within the joint limits, a [`ProgramPlan`]
+//! A [`MovePath`] is the path of a move, a [`Segment`] adds the time law within the joint limits, a [`ProgramPlan`]
 //! joins the steps of a program, and a [`ProgramClock`] advances along it as fast as the monitor's override and the
 //! joint decelerations permit.
 //!
@@ -18,7 +18,7 @@ mod program_plan;
 mod segment;
 
 pub use clock::{ProgramClock, RegionSwitch};
-pub use geometry::Geometry;
+pub use geometry::MovePath;
 pub use grip_action::{GripAction, HeldObjects};
 pub use line::TcpLine;
 pub use plan::{first_grip, plan, repeated_plan};

@@ -13,7 +13,7 @@ use elbowroom_scene::Attachment;
 use super::planned_parts::{PartError, PlannedParts};
 use super::planned_paths::{PathOrigin, PlannedPaths, Tooling};
 use super::program_plan::{PlanStep, ProgramPlan};
-use super::{Geometry, GripAction, Segment, TcpLine};
+use super::{GripAction, MovePath, Segment, TcpLine};
 
 /// Largest number of steps of a plan, including repetitions.
 const MAX_STEPS: u64 = 1_000_000;
@@ -301,7 +301,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
                     let note = self.error(index, step, what);
                     self.notes.push(note);
                 }
-                let segment = Segment::new(Geometry::TcpLine(Box::new(line)), limits, 1.0, rate)
+                let segment = Segment::new(MovePath::TcpLine(Box::new(line)), limits, 1.0, rate)
                     .map_err(|e| self.error(index, step, &e))?;
                 if segment.speed_share < 0.999 {
                     let share = segment.speed_share * 100.0;
@@ -315,7 +315,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
             }
             StepAction::Joint { to, speed } => {
                 let to = self.joint_target(index, step, to)?;
-                let path = Geometry::Joint { from: self.q.clone(), to };
+                let path = MovePath::Joint { from: self.q.clone(), to };
                 Segment::new(path, limits, *speed, f64::INFINITY).map_err(|e| self.error(index, step, &e))
             }
             _ => Err(self.error(index, step, "is not a move")),
@@ -363,7 +363,7 @@ impl<'p, 'a> ProgramPlanner<'p, 'a> {
         }
         let mut plan = ProgramPlan { start: first.to_vec(), speed_override: program.speed_override, steps: Vec::new() };
         let play = Arc::new(Playback::new(trajectory.clone(), &motion_bounds(&self.robot)));
-        let back = Geometry::Joint { from: last.to_vec(), to: first.to_vec() };
+        let back = MovePath::Joint { from: last.to_vec(), to: first.to_vec() };
         let back = Segment::new(back, &self.robot.limits, 0.5, f64::INFINITY)
             .map_err(|e| Diagnostic::new(&self.cell.file, program.line, e))?;
         let back = Arc::new(back);

@@ -4,12 +4,12 @@ use elbowroom_kinematics::JointLimits;
 use elbowroom_kinematics::TrajectoryPoint;
 use rsruckig::prelude::*;
 
-use super::Geometry;
+use super::MovePath;
 
 /// A move with its path and duration.
 #[derive(Debug)]
 pub struct Segment {
-    geometry: Geometry,
+    geometry: MovePath,
     law: TimeLaw,
     /// Fraction of the programmed speed that the joint limits permit, 0..1.
     pub speed_share: f64,
@@ -42,7 +42,7 @@ impl Segment {
     ///
     /// # Errors
     /// Error of the time law's library.
-    pub fn new(geometry: Geometry, limits: &[JointLimits], speed: f64, path_rate: f64) -> Result<Self, RuckigError> {
+    pub fn new(geometry: MovePath, limits: &[JointLimits], speed: f64, path_rate: f64) -> Result<Self, RuckigError> {
         let samples = geometry.samples();
         let Some((bounds, share)) = bounds(&samples, limits, speed, path_rate) else {
             return Ok(Self { geometry, law: TimeLaw::Rest, speed_share: 1.0, joint_share: 0.0 });
@@ -98,7 +98,7 @@ impl Segment {
     }
 
     /// The path.
-    pub fn geometry(&self) -> &Geometry {
+    pub fn geometry(&self) -> &MovePath {
         &self.geometry
     }
 }

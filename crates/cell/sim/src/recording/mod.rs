@@ -17,7 +17,7 @@ use serde::Serialize;
 
 pub use avoidance_track::{AvoidanceSample, AvoidanceTrack, Evasion, ReplanRecord};
 pub use guidance_track::{ForceSample, GuidanceSample, GuidanceState, GuidanceTrack};
-pub use perception_track::{Hold, HoldReason, PathReplan, PerceptionTrack, SensorTrack};
+pub use perception_track::{HeldPeriod, HoldReason, PathReplan, PerceptionTrack, SensorTrack};
 pub use region_track::{RecordedRegionKind, RegionPoses, RegionTrack, Span};
 pub use robot_ending::{Deadlock, Outcome, PartKind, RobotEnding, Stop};
 pub use run_event::{EventRow, RunEvent};

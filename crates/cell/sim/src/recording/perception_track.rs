@@ -11,7 +11,7 @@ pub struct PerceptionTrack {
     /// Searches for a new path, in order of time.
     pub replans: Vec<PathReplan>,
     /// Periods in which it was held, in order.
-    pub holds: Vec<Hold>,
+    pub holds: Vec<HeldPeriod>,
     /// Reason and cause if it was held at the end of the run.
     pub ends_held: Option<(HoldReason, String)>,
 }
@@ -29,7 +29,7 @@ pub struct PathReplan {
 
 /// A period in which a robot is held: it brakes or waits.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Hold {
+pub struct HeldPeriod {
     /// Start, s.
     pub from_s: f64,
     /// End, s.

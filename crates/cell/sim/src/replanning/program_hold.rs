@@ -1,7 +1,7 @@
 //! Whether a robot must brake now because its path is blocked, or because a sensor is silent.
 
 use crate::motion::ProgramClock;
-use crate::recording::{Hold, HoldReason};
+use crate::recording::{HeldPeriod, HoldReason};
 
 /// A robot at rest starts towards a blocked configuration only if it is farther away than this (s, at override 1).
 const RESUME_S: f64 = 0.2;
@@ -21,7 +21,7 @@ pub struct ProgramHold {
     /// The reason, and the obstacle or the sensor; `None` if the program is not held.
     held: Option<(HoldReason, String)>,
     /// `None` if they are not recorded: a live cell runs for years.
-    holds: Option<Vec<Hold>>,
+    holds: Option<Vec<HeldPeriod>>,
 }
 
 impl ProgramHold {
@@ -56,7 +56,7 @@ impl ProgramHold {
         if let Some(open) = holds.last_mut().filter(|_| self.held.is_some()) {
             open.to_s = t_s;
         }
-        let hold = |(reason, by): &(HoldReason, String)| Hold {
+        let hold = |(reason, by): &(HoldReason, String)| HeldPeriod {
             from_s: t_s,
             to_s: f64::INFINITY,
             reason: *reason,
@@ -80,7 +80,7 @@ impl ProgramHold {
     }
 
     /// All holds, up to the end of the run (s), and why the program is still held then.
-    pub(crate) fn finish(self, end_s: f64) -> (Vec<Hold>, Option<(HoldReason, String)>) {
+    pub(crate) fn finish(self, end_s: f64) -> (Vec<HeldPeriod>, Option<(HoldReason, String)>) {
         let mut holds = self.holds.unwrap_or_default();
         for hold in &mut holds {
             hold.to_s = hold.to_s.min(end_s);

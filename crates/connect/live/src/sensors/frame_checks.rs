@@ -3,7 +3,7 @@
 use elbowroom_cell::{Cell, CellSensor, SensorKind};
 use elbowroom_robot::RobotId;
 
-use super::frame_inputs::FrameSource;
+use super::frame_inputs::FrameInput;
 use crate::service_error::ServiceError;
 
 /// Checks that each source belongs to a sensor that guards one of the simulated robots, and no other source to the same.
@@ -13,7 +13,7 @@ use crate::service_error::ServiceError;
 pub(crate) fn check_frames(
     cell: &Cell,
     simulated: &[RobotId],
-    frames: &[(String, FrameSource)],
+    frames: &[(String, FrameInput)],
 ) -> Result<(), ServiceError> {
     let guards = |s: &&CellSensor| s.robots.iter().any(|robot| simulated.contains(robot));
     for (i, (name, source)) in frames.iter().enumerate() {
@@ -25,14 +25,14 @@ pub(crate) fn check_frames(
                 "no sensor of this name guards a simulated robot of this process\n  help: {one_of}"
             ));
         };
-        if !matches!(sensor.kind, SensorKind::Camera { .. }) && *source != FrameSource::Key {
+        if !matches!(sensor.kind, SensorKind::Camera { .. }) && *source != FrameInput::Key {
             return refuse(format!("clouds do not come from a pipe\n  help: --frames {name}=key"));
         }
         let before = &frames[..i];
         if before.iter().any(|(other, _)| other == name) {
             return refuse("is given twice\n  help: one source".to_owned());
         }
-        if *source != FrameSource::Key && before.iter().any(|(_, other)| other == source) {
+        if *source != FrameInput::Key && before.iter().any(|(_, other)| other == source) {
             return refuse("has the source of another sensor\n  help: a pipe of its own".to_owned());
         }
     }

@@ -24,7 +24,7 @@ const REOPENED_AFTER: Duration = Duration::from_millis(200);
 
 /// Where the pictures of a camera come from, in place of the folder of the cell file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum FrameSource {
+pub enum FrameInput {
     /// PNG pictures one after another, from standard input.
     StandardInput,
     /// PNG pictures one after another, from a named pipe.
@@ -73,7 +73,7 @@ impl FrameInputs {
     /// [`ServiceError`] if a key cannot be used, or a thread not be started.
     pub fn start(
         cell: &Cell,
-        sources: &[(String, FrameSource)],
+        sources: &[(String, FrameInput)],
         network: &Arc<dyn Network>,
         clock: Clock,
         on_event: Option<&EventHandler>,
@@ -84,12 +84,12 @@ impl FrameInputs {
         for sensor in cell.sensors.iter().filter(|sensor| !sensor.robots.is_empty()) {
             let source = sources.iter().find(|(name, _)| *name == sensor.name).map(|(_, source)| source);
             // What has a folder is heard on its key only if that is asked for.
-            if source == Some(&FrameSource::Key) || (source.is_none() && sensor.folder.is_none()) {
+            if source == Some(&FrameInput::Key) || (source.is_none() && sensor.folder.is_none()) {
                 let (waiting, name, latency_s) = (waiting.clone(), sensor.name.clone(), sensor.latency_s);
                 let handler = Box::new(move |bytes: &[u8]| waiting.push(&name, latency_s, bytes.to_vec()));
                 subscriptions.push(network.subscribe(&keys.frames(&sensor.name), handler)?);
             }
-            if let Some(source) = source.filter(|source| **source != FrameSource::Key) {
+            if let Some(source) = source.filter(|source| **source != FrameInput::Key) {
                 read_pipe(sensor, source.clone(), waiting.clone(), on_event.cloned()).map_err(ServiceError::Thread)?;
             }
         }
@@ -105,7 +105,7 @@ impl FrameInputs {
 /// Reads pictures from a pipe, on a thread of its own. A named pipe is opened again when it has ended.
 fn read_pipe(
     sensor: &CellSensor,
-    source: FrameSource,
+    source: FrameInput,
     waiting: Waiting,
     on_event: Option<EventHandler>,
 ) -> io::Result<()> {
@@ -118,13 +118,13 @@ fn read_pipe(
                 Err(error) => format!("{error} (PNG pictures one after another: ffmpeg … -f image2pipe -c:v png -)"),
             };
             let remedy = match &source {
-                FrameSource::Pipe(path) => format!("write pictures to {} again", path.display()),
-                FrameSource::StandardInput | FrameSource::Key => "start this process again".to_owned(),
+                FrameInput::Pipe(path) => format!("write pictures to {} again", path.display()),
+                FrameInput::StandardInput | FrameInput::Key => "start this process again".to_owned(),
             };
             if let Some(on_event) = &on_event {
                 on_event(&format!("sensor {name}: {ended}; the robots that it guards stop\n  help: {remedy}"));
             }
-            if !matches!(source, FrameSource::Pipe(_)) {
+            if !matches!(source, FrameInput::Pipe(_)) {
                 return;
             }
             std::thread::sleep(REOPENED_AFTER);
@@ -133,10 +133,10 @@ fn read_pipe(
     std::thread::Builder::new().name("pictures".into()).spawn(read).map(|_| ())
 }
 
-fn open(source: &FrameSource) -> io::Result<Box<dyn Read>> {
+fn open(source: &FrameInput) -> io::Result<Box<dyn Read>> {
     Ok(match source {
-        FrameSource::Pipe(path) => Box::new(io::BufReader::new(File::open(path)?)),
-        FrameSource::StandardInput | FrameSource::Key => Box::new(io::stdin().lock()),
+        FrameInput::Pipe(path) => Box::new(io::BufReader::new(File::open(path)?)),
+        FrameInput::StandardInput | FrameInput::Key => Box::new(io::stdin().lock()),
     })
 }
 

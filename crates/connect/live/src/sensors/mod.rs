@@ -11,6 +11,6 @@ mod sensor_guards;
 mod sensor_news;
 
 pub(crate) use frame_checks::{check_frames, unguarded};
-pub use frame_inputs::FrameSource;
+pub use frame_inputs::FrameInput;
 pub(crate) use guarded_program::GuardedProgram;
 pub(crate) use sensor_guards::{GuardedPrograms, SensorGuards};

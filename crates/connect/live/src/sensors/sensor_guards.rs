@@ -14,7 +14,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_sim::replanning::{ObjectPlaces, PathGuard, PathReplanner, PerceivedObstacles, SearchTiming};
 
 use super::checked_robot::{CellView, CheckedRobot};
-use super::frame_inputs::{FrameInputs, FrameSource};
+use super::frame_inputs::{FrameInput, FrameInputs};
 use super::guarded_program::{GuardedProgram, PathCheck};
 use super::joint_history::JointHistory;
 use super::path_worker::work;
@@ -50,7 +50,7 @@ impl SensorGuards {
     /// [`ServiceError`] if a folder of pictures cannot be read, a robot has no joint-space map, or a thread cannot be started.
     pub(crate) fn start(
         programs: GuardedPrograms,
-        sources: &[(String, FrameSource)],
+        sources: &[(String, FrameInput)],
         (network, controllers): (&Arc<dyn Network>, &Arc<dyn Network>),
         clock: Clock,
         on_event: Option<EventHandler>,

@@ -4,8 +4,8 @@
 
 use elbowroom_kinematics::{Chain, Joint, JointId, JointKind, Limits, LinkId, Mimic};
 use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Grid, GridAxis, GridSpace, Guards, Laws, Life, Monitor, Part, Presence, Region,
-    RegionKind, SlotId, SourceId, SourceLimits, SourceSpec, StoppingSettings, Volume,
+    Configuration, ConfigurationParts, GridSpace, Guards, Laws, Life, Monitor, OutputGrid, OutputGridAxis, Part,
+    Presence, Region, RegionKind, SlotId, SourceId, SourceLimits, SourceSpec, StoppingSettings, Volume,
 };
 use elbowroom_ros2::msgs::elbowroom_msgs as msgs;
 use elbowroom_spatial::Pose;
@@ -145,8 +145,8 @@ fn source(source: &SourceSpec) -> msgs::Source {
     }
 }
 
-fn grid(grid: &Grid) -> msgs::Grid {
-    let Grid { name, space, axes, output, hysteresis } = grid;
+fn grid(grid: &OutputGrid) -> msgs::Grid {
+    let OutputGrid { name, space, axes, output, hysteresis } = grid;
     let (frame_in_world, joints) = match space {
         GridSpace::Tcp { frame_in_world } => (*frame_in_world, Vec::new()),
         GridSpace::Joints(joints) => (Pose::IDENTITY, joints.iter().map(|j| index(*j)).collect()),
@@ -288,7 +288,7 @@ fn read_source(message: &msgs::Source) -> Result<SourceSpec, ConfigurationDefect
     Ok(SourceSpec { name: message.name.clone(), limits })
 }
 
-fn read_grid(message: &msgs::Grid) -> Result<Grid, ConfigurationDefect> {
+fn read_grid(message: &msgs::Grid) -> Result<OutputGrid, ConfigurationDefect> {
     let msgs::Grid { name, frame_in_world, joints, from, to, count, output, hysteresis } = message;
     let frame_in_world = pose(frame_in_world, name)?;
     let space = match &joints[..] {
@@ -299,8 +299,8 @@ fn read_grid(message: &msgs::Grid) -> Result<Grid, ConfigurationDefect> {
         return Err(ConfigurationDefect::Axes(name.clone()));
     }
     let ends = from.iter().zip(to).zip(count);
-    let axes = ends.map(|((from, to), count)| GridAxis { from: *from, to: *to, count: *count }).collect();
-    Ok(Grid { name: name.clone(), space, axes, output: *output, hysteresis: *hysteresis })
+    let axes = ends.map(|((from, to), count)| OutputGridAxis { from: *from, to: *to, count: *count }).collect();
+    Ok(OutputGrid { name: name.clone(), space, axes, output: *output, hysteresis: *hysteresis })
 }
 
 /// Reads the value of an optional field.

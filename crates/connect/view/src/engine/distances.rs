@@ -10,7 +10,7 @@ use elbowroom_scene::{Checker, CheckerOptions, PairDistance, Scene, SceneState, 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_status::{CellStatus, PoseStatus, RobotStatus};
 
-use crate::frame::{Frame, FrameRobot, PairSeparation, RegionDistance};
+use crate::frame::{FrameRobot, PairSeparation, RegionDistance, ViewFrame};
 
 /// Measures the distances for statuses of a cell.
 pub(crate) struct Distances<'s> {
@@ -35,7 +35,7 @@ impl<'s> Distances<'s> {
     }
 
     /// Makes the frame of a status: robots in the order of the cell, with distances if their joint values are known.
-    pub(crate) fn frame(&mut self, mut cell_status: CellStatus) -> Frame {
+    pub(crate) fn frame(&mut self, mut cell_status: CellStatus) -> ViewFrame {
         let robots = self.in_order(std::mem::take(&mut cell_status.robots));
         let known: Vec<bool> =
             robots.iter().enumerate().map(|(r, robot)| self.place_robot(RobotId(r), &robot.q)).collect();
@@ -56,7 +56,7 @@ impl<'s> Distances<'s> {
             }
             measured.push(out);
         }
-        let mut frame = Frame::of(cell_status, measured);
+        let mut frame = ViewFrame::of(cell_status, measured);
         frame.nearest = nearest.map(|d| self.named(&d));
         frame
     }

@@ -12,7 +12,7 @@ use elbowroom_status::CellStatus;
 use tokio::sync::watch;
 
 use super::distances::Distances;
-use crate::frame::Frame;
+use crate::frame::ViewFrame;
 use crate::history::History;
 use crate::inbox::Inbox;
 use crate::source::ViewSource;
@@ -85,7 +85,7 @@ pub(crate) fn run(
         let again = || nothing.or_else(|| last.clone().filter(|_| is_commanded));
         let Some(status) = own.or(taken.status).or_else(again) else { continue };
         number += 1;
-        let frame = Frame { number, message: message.clone(), ..measured(&mut distances, &status) };
+        let frame = ViewFrame { number, message: message.clone(), ..measured(&mut distances, &status) };
         last = Some(status);
         match serde_json::to_string(&frame) {
             Ok(text) => {
@@ -101,8 +101,8 @@ pub(crate) fn run(
     }
 }
 
-fn measured(distances: &mut Distances<'_>, status: &CellStatus) -> Frame {
+fn measured(distances: &mut Distances<'_>, status: &CellStatus) -> ViewFrame {
     let begin = Instant::now();
     let frame = distances.frame(status.clone());
-    Frame { measured_in_s: begin.elapsed().as_secs_f64(), ..frame }
+    ViewFrame { measured_in_s: begin.elapsed().as_secs_f64(), ..frame }
 }

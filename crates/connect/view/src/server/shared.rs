@@ -10,14 +10,14 @@ use crate::engine::SentFrame;
 use crate::history::History;
 use crate::http::Hosts;
 use crate::inbox::Inbox;
-use crate::settings::Limits;
+use crate::settings::ClientLimits;
 
 /// State that all requests share.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub(crate) token: Token,
     pub(crate) hosts: Hosts,
-    pub(crate) limits: Limits,
+    pub(crate) limits: ClientLimits,
     pub(crate) geometry: Bytes,
     pub(crate) inbox: Arc<Inbox>,
     pub(crate) history: Arc<History>,

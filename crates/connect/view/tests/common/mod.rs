@@ -8,7 +8,7 @@ use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
 use elbowroom_cell::Cell;
-use elbowroom_view::{Limits, Server, ServerSettings};
+use elbowroom_view::{ClientLimits, Server, ServerSettings};
 use serde_json::{Value, json};
 use tungstenite::client::IntoClientRequest as _;
 use tungstenite::http::HeaderValue;
@@ -89,13 +89,13 @@ pub fn cell() -> Cell {
 }
 
 /// Short limits, so that a test does not have to wait.
-pub fn limits() -> Limits {
-    Limits {
+pub fn limits() -> ClientLimits {
+    ClientLimits {
         head: Duration::from_millis(400),
         request: Duration::from_secs(2),
         send: Duration::from_secs(1),
         silence: Duration::from_secs(20),
-        ..Limits::default()
+        ..ClientLimits::default()
     }
 }
 

@@ -9,7 +9,7 @@ use elbowroom::cell::Cell;
 use elbowroom::cell::access::NetworkKey;
 use elbowroom::live::network::ZENOH_RUNTIME;
 use elbowroom::live::ros2::Ros2Settings;
-use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, FrameSource, Keys, Service, ServiceOptions, region_journal_of};
+use elbowroom::live::{ControlOptions, DEFAULT_ADDRESS, FrameInput, Keys, Service, ServiceOptions, region_journal_of};
 
 use super::LiveArgs;
 use super::endpoints::endpoint;
@@ -79,16 +79,16 @@ pub(crate) fn live(args: &LiveArgs) -> Result<ExitStatus, Failure> {
 }
 
 /// A sensor, and where its pictures come from.
-fn frame_source((sensor, source): &(String, String)) -> Result<(String, FrameSource), Failure> {
+fn frame_source((sensor, source): &(String, String)) -> Result<(String, FrameInput), Failure> {
     let source = match source.as_str() {
-        "-" => FrameSource::StandardInput,
-        "key" => FrameSource::Key,
+        "-" => FrameInput::StandardInput,
+        "key" => FrameInput::Key,
         path if !is_pipe(Path::new(path)) => {
             let what = format!("--frames {sensor}={path}: no named pipe is there");
             let instead = format!("mkfifo {path} before it; a folder belongs into the cell file: frames = \"DIR\"");
             return Err(Failure::Wrong(format!("{what}\n  write: {instead}")));
         }
-        path => FrameSource::Pipe(path.into()),
+        path => FrameInput::Pipe(path.into()),
     };
     Ok((sensor.clone(), source))
 }

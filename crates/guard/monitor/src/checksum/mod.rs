@@ -5,7 +5,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_spatial::{Pose, Vec3};
 use sha2::{Digest, Sha256};
 
-use crate::{Configuration, Grid, GridSpace, Laws, Life, Part, Presence, Region, RegionKind, SourceSpec, Volume};
+use crate::{Configuration, GridSpace, Laws, Life, OutputGrid, Part, Presence, Region, RegionKind, SourceSpec, Volume};
 
 impl Configuration {
     /// SHA-256 (hex) over all bits that determine an override or an output: chain, volumes, regions, sources,
@@ -224,7 +224,7 @@ impl Hasher {
     }
 
     /// Configurations without grids hash as before there were any, so that their seals stay valid.
-    fn grids(&mut self, grids: &[Grid]) {
+    fn grids(&mut self, grids: &[OutputGrid]) {
         if grids.is_empty() {
             return;
         }

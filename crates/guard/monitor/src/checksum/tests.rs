@@ -7,8 +7,8 @@ use elbowroom_proximity::{Capsule, ConvexHull, Cuboid, Cylinder, HalfSpace, Shap
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::{
-    Configuration, Grid, GridAxis, GridSpace, Guards, Laws, Life, Part, Presence, Region, RegionKind, SlotId, SourceId,
-    StoppingSettings, Volume,
+    Configuration, GridSpace, Guards, Laws, Life, OutputGrid, OutputGridAxis, Part, Presence, Region, RegionKind,
+    SlotId, SourceId, StoppingSettings, Volume,
 };
 
 type Change = fn(&mut Configuration);
@@ -57,9 +57,9 @@ fn configuration() -> Configuration {
     }
 }
 
-fn grid(space: GridSpace) -> Grid {
-    let axis = |count: u32| GridAxis { from: -1.0, to: 1.0, count };
-    Grid { name: "g".into(), space, axes: vec![axis(4), axis(3)], output: 8, hysteresis: 0.01 }
+fn grid(space: GridSpace) -> OutputGrid {
+    let axis = |count: u32| OutputGridAxis { from: -1.0, to: 1.0, count };
+    OutputGrid { name: "g".into(), space, axes: vec![axis(4), axis(3)], output: 8, hysteresis: 0.01 }
 }
 
 /// The chain again, with one joint changed.
@@ -198,7 +198,7 @@ fn of_region() -> Vec<Named> {
 }
 
 fn of_grids() -> Vec<Named> {
-    let Grid { name: _, space: _, axes: _, output: _, hysteresis: _ } = grid(GridSpace::Joints(vec![]));
+    let OutputGrid { name: _, space: _, axes: _, output: _, hysteresis: _ } = grid(GridSpace::Joints(vec![]));
     vec![
         ("grid name", |c| c.grids[0].name.push('x')),
         ("grid of another joint", |c| c.grids[0].space = GridSpace::Joints(vec![0, 0])),

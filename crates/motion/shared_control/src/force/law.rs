@@ -9,7 +9,7 @@ const DAMPER_RAMP: f64 = 0.25;
 
 /// How the force grows as two bodies come nearer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Field {
+pub enum ForceProfile {
     /// `k (r − d)`: a spring (Reichenbach and Kovačić, 2003).
     Linear,
     /// `η (1/d − 1/r) / d²` with `η = k r⁴ / 8`, as strong as the spring at half of the range (Khatib, 1986). Below an
@@ -21,7 +21,7 @@ pub enum Field {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceLaw {
     /// The shape of the force.
-    pub field: Field,
+    pub field: ForceProfile,
     /// Distance at which it begins, metres.
     pub range_m: f64,
     /// Stiffness k, N/m.
@@ -44,7 +44,7 @@ pub struct Aureole {
 impl ForceLaw {
     /// A spring without damping.
     pub fn spring(range_m: f64, stiffness_n_m: f64) -> Self {
-        Self { field: Field::Linear, range_m, stiffness_n_m, damping_n_s_m: 0.0, aureole: None }
+        Self { field: ForceProfile::Linear, range_m, stiffness_n_m, damping_n_s_m: 0.0, aureole: None }
     }
 
     /// Checks the constants.
@@ -75,8 +75,8 @@ impl ForceLaw {
         }
         let k = self.stiffness_n_m;
         match self.field {
-            Field::Linear => 0.5 * k * (range_m - distance_m).powi(2),
-            Field::Khatib => {
+            ForceProfile::Linear => 0.5 * k * (range_m - distance_m).powi(2),
+            ForceProfile::Khatib => {
                 let least = CAP * range_m;
                 let d = distance_m.max(least);
                 let eta = 0.125 * k * range_m.powi(4);
@@ -93,8 +93,8 @@ impl ForceLaw {
         }
         let k = self.stiffness_n_m;
         match self.field {
-            Field::Linear => k * (range_m - distance_m),
-            Field::Khatib => {
+            ForceProfile::Linear => k * (range_m - distance_m),
+            ForceProfile::Khatib => {
                 let d = distance_m.max(CAP * range_m);
                 0.125 * k * range_m.powi(4) * (1.0 / d - 1.0 / range_m) / (d * d)
             }
@@ -107,9 +107,9 @@ impl ForceLaw {
             return 0.0;
         }
         match self.field {
-            Field::Linear => self.stiffness_n_m,
-            Field::Khatib if distance_m <= CAP * range_m => 0.0,
-            Field::Khatib => {
+            ForceProfile::Linear => self.stiffness_n_m,
+            ForceProfile::Khatib if distance_m <= CAP * range_m => 0.0,
+            ForceProfile::Khatib => {
                 let (d, eta) = (distance_m, 0.125 * self.stiffness_n_m * range_m.powi(4));
                 eta * (3.0 / d - 2.0 / range_m) / d.powi(3)
             }
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn forces_are_slopes_of_their_potentials() {
-        for field in [Field::Linear, Field::Khatib] {
+        for field in [ForceProfile::Linear, ForceProfile::Khatib] {
             let law = ForceLaw { field, ..ForceLaw::spring(0.04, 2000.0) };
             for k in 0..=400 {
                 let (d, h) = (1e-4 * f64::from(k) + 3e-5, 1e-7);
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn both_fields_are_equal_at_half_of_the_range_and_nothing_beyond() {
         let spring = ForceLaw::spring(0.04, 2000.0);
-        let khatib = ForceLaw { field: Field::Khatib, ..spring };
+        let khatib = ForceLaw { field: ForceProfile::Khatib, ..spring };
         assert!((spring.force_n(0.02, 0.04) - khatib.force_n(0.02, 0.04)).abs() < 1e-9);
         for law in [spring, khatib] {
             assert_eq!((law.force_n(0.04, 0.04), law.potential_j(0.05, 0.04)), (0.0, 0.0));

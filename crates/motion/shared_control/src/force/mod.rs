@@ -11,5 +11,5 @@ pub(crate) use arm_forces::ArmPlace;
 pub use arm_forces::{ArmField, ArmForces, FieldPair, Response};
 pub use field::FieldSample;
 pub use impedance_port::{ImpedancePort, ImpedanceSettings};
-pub use law::{Aureole, Field, ForceLaw};
+pub use law::{Aureole, ForceLaw, ForceProfile};
 pub use virtual_body::{BodySettings, VirtualBody};
