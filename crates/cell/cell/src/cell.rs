@@ -15,7 +15,8 @@ use elbowroom_spatial::units::{AngleUnit, LengthUnit};
 
 use crate::seal::Seal;
 use crate::{
-    CellSensor, CellTiming, CellTool, Encoder, FenceWall, Guidance, MovingObject, Payload, PoseTrack, Program,
+    CellSensor, CellTiming, CellTool, Encoder, FenceWall, Guidance, MeasuredSource, MovingObject, Payload, PoseTrack,
+    Program,
 };
 
 /// A tool centre point within this distance (m) of a collider counts as on its surface, such as a flange frame on the
@@ -73,6 +74,8 @@ pub struct FrameSources {
     pub encoders: Vec<Encoder>,
     /// Pose files, in the order of the regions that follow them.
     pub pose_tracks: Vec<PoseTrack>,
+    /// Encoders and objects with `measured = true`, in file order, encoders first.
+    pub measured: Vec<MeasuredSource>,
 }
 
 /// Rules of a cell for pairs of links and objects.

@@ -2,21 +2,59 @@
 
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::SourceState;
-use elbowroom_robot::RobotId;
-use elbowroom_spatial::{FrameMotion, Pose, Vec3};
+use elbowroom_robot::{ObjectId, RobotId};
+use elbowroom_spatial::{FrameMotion, Vec3};
 
-use crate::{Cell, Drive, Follow};
+use crate::{Cell, Drive, Follow, FrameSources, MeasuredSource, MovingObject};
 
 /// Frames of robots, encoders, objects and pose files.
 #[derive(Debug)]
 pub struct Frames<'a> {
     cell: &'a Cell,
+    measured: &'a [SourceState],
 }
 
 impl<'a> Frames<'a> {
     /// The frames of a cell.
     pub fn new(cell: &'a Cell) -> Self {
-        Self { cell }
+        Self { cell, measured: &[] }
+    }
+
+    /// The frames of a cell in which the measured sources, in the order of
+    /// [`FrameSources::measured`](crate::FrameSources::measured), are where these states say.
+    pub fn with_measured(cell: &'a Cell, measured: &'a [SourceState]) -> Self {
+        Self { cell, measured }
+    }
+
+    /// Index of the measured source that a followed frame moves with; `None` if it moves as the cell file says.
+    pub fn measured_source(&self, follow: &Follow) -> Option<usize> {
+        let FrameSources { encoders, measured, .. } = &self.cell.frame_sources;
+        let index = |source: MeasuredSource| measured.iter().position(|m| *m == source);
+        match follow {
+            Follow::Encoder(e) => index(MeasuredSource::Encoder(*e)),
+            Follow::Object(o) => index(MeasuredSource::Object(*o)).or_else(|| {
+                let Drive::Belt(belt) = &self.moving_object(*o)?.drive else { return None };
+                index(MeasuredSource::Encoder(encoders.iter().position(|e| e.name == belt.name)?))
+            }),
+            Follow::Poses(_) | Follow::Robot { .. } => None,
+        }
+    }
+
+    /// Pose and velocity of a frame that moves with a measured source.
+    fn measured(&self, follow: &Follow) -> Option<SourceState> {
+        let index = self.measured_source(follow)?;
+        let state = *self.measured.get(index)?;
+        match (follow, self.cell.frame_sources.measured[index]) {
+            (Follow::Object(o), MeasuredSource::Encoder(_)) => {
+                let rest = self.moving_object(*o)?.rest_in_world;
+                Some(SourceState { pose: state.pose * rest, ..state })
+            }
+            _ => Some(state),
+        }
+    }
+
+    fn moving_object(&self, object: ObjectId) -> Option<&MovingObject> {
+        self.cell.moving_objects.iter().find(|m| m.object == object)
     }
 
     /// The [`Self::source`] of each followed frame, in order.
@@ -26,14 +64,17 @@ impl<'a> Frames<'a> {
 
     /// Pose and velocity of a followed frame in the world.
     pub fn source(&self, follow: &Follow, states: &[ChainState], t_s: f64) -> SourceState {
+        if let Some(state) = self.measured(follow) {
+            return state;
+        }
         match follow {
             Follow::Encoder(e) => {
-                let (travel, speed) = self.cell.frame_sources.encoders[*e].at(t_s);
-                let direction = self.cell.frame_sources.encoders[*e].direction;
-                let motion = FrameMotion { velocity: direction * speed, ..FrameMotion::REST };
-                SourceState { pose: Pose::from_translation(direction * travel), motion, stamp_s: t_s }
+                let encoder = &self.cell.frame_sources.encoders[*e];
+                let (travel, speed) = encoder.at(t_s);
+                let (pose, motion) = encoder.displacement(travel, speed);
+                SourceState { pose, motion, stamp_s: t_s }
             }
-            Follow::Object(o) => match self.cell.moving_objects.iter().find(|m| m.object == *o) {
+            Follow::Object(o) => match self.moving_object(*o) {
                 Some(moving_object) => {
                     SourceState { pose: moving_object.pose(t_s), motion: moving_object.motion(t_s), stamp_s: t_s }
                 }
@@ -58,6 +99,11 @@ impl<'a> Frames<'a> {
                 SourceState { pose: base * link_in_root * *in_link, motion, stamp_s: t_s }
             }
         }
+    }
+
+    /// Whether the cell file moves an object.
+    pub fn is_driven(&self, object: ObjectId) -> bool {
+        self.moving_object(object).is_some()
     }
 
     /// Tool centre point of a robot in the world (m) and its speed (m/s).

@@ -152,6 +152,15 @@ const CASES: &[Case] = &[
         ],
     ),
     (
+        ENCODER,
+        "measured = true",
+        [
+            ("measured = 1", "must be true or false", "measured = true"),
+            ("measured = \"yes\"", "must be true or false", "measured = true"),
+            ("measurd = true", "no key `measurd`", "measured"),
+        ],
+    ),
+    (
         CAMERA,
         "center_px = [320, 240]",
         [
@@ -254,4 +263,32 @@ fn the_overshoot_of_the_file_is_in_the_units_of_each_joint() {
     assert_ne!(checksum("overshoot = 2"), checksum(""));
     assert_ne!(checksum("overshoot = 2"), checksum("overshoot = 3"));
     assert_eq!(checksum("overshoot = 2"), checksum("overshoot = [2, 2]"));
+}
+
+#[test]
+fn what_is_measured_moves_by_itself_and_has_another_seal() {
+    let text = |belt: &str, parcel: &str, plane: &str| {
+        format!(
+            "{HEAD}{}{ENCODER}\n{belt}\n[object.parcel]\nshape = \"box\"\nsize = [100, 100, 100]\nat = [0, 0, 900]\n\
+             {parcel}\n[object.floor]\nshape = \"plane\"\nat = [0, 0, -900]\n{plane}\n\
+             {FOLLOWING}\nfollow = {{ object = \"parcel\" }}\n",
+            rail("r", 0.0)
+        )
+    };
+    let cell = |belt: &str, parcel: &str, plane: &str| Cell::parse("cell.toml", &text(belt, parcel, plane));
+    let on_belt = "follow = { encoder = \"belt\" }";
+    let seal = |belt: &str, parcel: &str| cell(belt, parcel, "").map(|cell| cell.approval.checksum).unwrap();
+    // A region on what is measured is another region: it is not where the file says.
+    assert_ne!(seal("", on_belt), seal("measured = true", on_belt));
+    assert_ne!(seal("", ""), seal("", "measured = true"));
+    assert_eq!(seal("", on_belt), seal("measured = false", on_belt));
+    assert_eq!(seal("", ""), seal("measured = true", ""));
+    for (wrong, what) in [
+        (cell("", &format!("{on_belt}\nmeasured = true"), ""), "contradicts `follow`"),
+        (cell("", "", "measured = true"), "moves a plane"),
+    ] {
+        let error = wrong.unwrap_err();
+        assert!(error.message.contains(what) && error.line.is_some() && error.hint.is_some(), "{error}");
+    }
+    assert!(cell("", "", "measured = false").is_ok());
 }

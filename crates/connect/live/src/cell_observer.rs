@@ -5,15 +5,19 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use elbowroom_cell::Cell;
+use elbowroom_cell::{Cell, Follow, Frames};
 use elbowroom_interlock::Micros;
+use elbowroom_monitor::SourceState;
 use elbowroom_recording::Recorder;
-use elbowroom_status::{CellStatus, EventStatus, HealthStatus, RobotStatus, ServiceStatus, SlotStatus};
+use elbowroom_robot::ObjectId;
+use elbowroom_spatial::{FrameMotion, Pose};
+use elbowroom_status::{CellStatus, EventStatus, HealthStatus, PlacedStatus, RobotStatus, ServiceStatus, SlotStatus};
 use elbowroom_view::StatusFeed;
 
 use crate::clock::Clock;
 use crate::keys::Keys;
 use crate::locked::locked;
+use crate::measured_sources::MeasuredSources;
 use crate::network::{Network, NetworkError, Subscription};
 use crate::ros2::CellFeed;
 
@@ -46,7 +50,7 @@ impl CellObserver {
     /// Subscribes to all robots of the cell, in this process and in others.
     pub(crate) fn start(
         cell: &Arc<Cell>,
-        network: &Arc<dyn Network>,
+        [network, of_controllers]: [&Arc<dyn Network>; 2],
         clock: Clock,
         feed: Option<StatusFeed>,
         recorder: Option<Recorder>,
@@ -55,11 +59,13 @@ impl CellObserver {
         let shared = Shared::default();
         locked(&shared).robots.resize(cell.robots.len(), None);
         let subscriptions = subscribe(cell, network, clock, &shared)?;
+        let measured = MeasuredSources::start(cell, of_controllers, clock)?;
         let is_closed = Arc::new(AtomicBool::new(false));
         let (closed, cell) = (is_closed.clone(), cell.clone());
         let run = move || {
             while !closed.load(Ordering::SeqCst) {
-                let status = together(&cell, clock, &shared);
+                let objects = placed_objects(&cell, &measured, clock);
+                let status = CellStatus { objects, ..together(&cell, clock, &shared) };
                 if let Some(recorder) = &recorder {
                     recorder.status(status.clone());
                 }
@@ -131,6 +137,21 @@ fn aged(status: &RobotStatus, age_s: f64) -> RobotStatus {
     let mut status = status.clone();
     status.service.health.age_s = age_s;
     status
+}
+
+/// The objects that move by themselves, where they are now. A measured object that is not heard is left out.
+fn placed_objects(cell: &Cell, measured: &MeasuredSources, clock: Clock) -> Vec<PlacedStatus> {
+    let heard = measured.states();
+    let unknown = SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: 0.0 };
+    let states: Vec<SourceState> = heard.iter().map(|state| state.unwrap_or(unknown)).collect();
+    let frames = Frames::with_measured(cell, &states);
+    let placed = |object: ObjectId| {
+        let follow = Follow::Object(object);
+        let moves = frames.measured_source(&follow).map_or_else(|| frames.is_driven(object), |i| heard[i].is_some());
+        let placed = moves.then(|| frames.source(&follow, &[], clock.seconds()))?;
+        Some(PlacedStatus { name: cell.objects[object.0].name.clone(), pose: (&placed.pose).into() })
+    };
+    (0..cell.objects.len()).map(ObjectId).filter_map(placed).collect()
 }
 
 fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {

@@ -74,6 +74,17 @@ impl Keys {
         format!("elbowroom/{}/sensor/{}/frames", self.cell, chunk(sensor))
     }
 
+    /// Travel of a measured encoder: [`JointState`](crate::messages::JointState) of one position, m.
+    pub fn encoder(&self, name: &str) -> String {
+        format!("elbowroom/{}/encoder/{}/travel", self.cell, chunk(name))
+    }
+
+    /// Pose of a measured object: [`JointState`](crate::messages::JointState) of seven positions, x, y, z (m) and the quaternion x, y, z, w, or thirteen with
+    /// velocity (m/s) and angular velocity (rad/s).
+    pub fn object(&self, name: &str) -> String {
+        format!("elbowroom/{}/object/{}/pose", self.cell, chunk(name))
+    }
+
     /// Table of the regions and whether they are on, from the arbiter's process: JSON.
     pub fn regions(&self) -> String {
         format!("elbowroom/{}/regions", self.cell)

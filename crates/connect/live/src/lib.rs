@@ -52,6 +52,7 @@ mod control;
 mod event_handler;
 mod keys;
 mod locked;
+mod measured_sources;
 pub mod messages;
 pub mod network;
 pub mod node;
@@ -68,6 +69,7 @@ mod service_options;
 mod service_start;
 mod silence_watch;
 mod simulated_controllers;
+mod simulated_sources;
 mod switch_requests;
 
 pub use arbiter_service::{ArbiterService, NotCleared};

@@ -18,11 +18,13 @@ use crate::service_error::ServiceError;
 use crate::service_options::ServiceOptions;
 use crate::service_start::ServiceStart;
 use crate::simulated_controllers::SimulatedControllers;
+use crate::simulated_sources::SimulatedSources;
 
 /// A running process of a live cell; it ends when it is dropped.
 pub struct Service {
     // In the order in which the parts end: controllers stop first.
     controllers: Option<SimulatedControllers>,
+    sources: Option<SimulatedSources>,
     ros2: Option<Participant>,
     nodes: Vec<Node>,
     control: Option<ControlServer>,
@@ -48,11 +50,24 @@ impl Service {
         let recorder = begin.recorder()?;
         let nodes = begin.nodes(recorder.as_ref(), claims)?;
         let ros2 = begin.ros2()?;
+        let sources = begin.simulated_sources()?;
         let controllers = begin.simulated_controllers()?;
         let peers = begin.peers()?;
         let (server, feed) = begin.web()?.unzip();
         let observer = begin.observer(feed, recorder, ros2.as_ref().and_then(Participant::feed))?;
-        Ok(Self { controllers, ros2, nodes, control, arbiter, keeper, observer, peers, server, network: begin.zenoh })
+        Ok(Self {
+            controllers,
+            sources,
+            ros2,
+            nodes,
+            control,
+            arbiter,
+            keeper,
+            observer,
+            peers,
+            server,
+            network: begin.zenoh,
+        })
     }
 
     /// Number of robots that this process guards.
@@ -90,8 +105,9 @@ impl Service {
     /// # Errors
     /// [`ServiceError::Recording`] if the recording could not be written.
     pub fn stop(self) -> Result<(), ServiceError> {
-        let Self { controllers, ros2, nodes, control, arbiter, keeper, observer, peers, server, network } = self;
-        drop((peers, controllers, ros2, nodes, control, arbiter, keeper));
+        let Self { controllers, sources, ros2, nodes, control, arbiter, keeper, observer, peers, server, network } =
+            self;
+        drop((peers, controllers, sources, ros2, nodes, control, arbiter, keeper));
         let recorder = observer.and_then(CellObserver::stop);
         if let Some(server) = server {
             server.stop();

@@ -20,6 +20,7 @@ use crate::configuration_number::configuration_number;
 use crate::control::{ControlParts, ControlServer, JointsHeard, NodesHeard};
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
+use crate::measured_sources::MeasuredSources;
 use crate::network::{
     AuthenticatedNetwork, JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings,
 };
@@ -33,6 +34,7 @@ use crate::sensors::{check_frames, unguarded};
 use crate::service_error::ServiceError;
 use crate::service_options::{DEFAULT_ADDRESS, ServiceOptions};
 use crate::simulated_controllers::SimulatedControllers;
+use crate::simulated_sources::SimulatedSources;
 
 /// Time after which a missing answer of the other process is reported.
 const NOBODY: Duration = Duration::from_secs(2);
@@ -111,6 +113,7 @@ impl<'o> ServiceStart<'o> {
             arbiter: arbiter.cloned(),
             nodes: NodesHeard::start(&self.cell, &self.shared, self.clock)?,
             joints: JointsHeard::start(&self.cell, &self.of_controllers, self.clock, Micros(0))?,
+            measured: MeasuredSources::start(&self.cell, &self.of_controllers, self.clock)?,
             clock: self.clock,
             on_event: self.options.on_event.clone(),
         };
@@ -176,6 +179,14 @@ impl<'o> ServiceStart<'o> {
         Ok(Participant::start(&self.cell, settings, &self.robots, &self.shared, self.clock, on_event)?)
     }
 
+    /// Sends the measured sources in place of those who measure them, if this process keeps the regions and simulates.
+    pub(crate) fn simulated_sources(&self) -> Result<Option<SimulatedSources>, ServiceError> {
+        if !self.options.simulate || !self.keeps_regions() {
+            return Ok(None);
+        }
+        Ok(SimulatedSources::start(&self.cell, &self.of_controllers, self.clock)?)
+    }
+
     /// Starts simulated controllers for all robots of this process, except for robots whose controllers use ROS 2.
     pub(crate) fn simulated_controllers(&self) -> Result<Option<SimulatedControllers>, ServiceError> {
         let is_real = |robot: &RobotId| self.options.ros2.robot(&self.cell.robots[robot.0].name).is_some();
@@ -216,7 +227,14 @@ impl<'o> ServiceStart<'o> {
         if page.is_none() && recorder.is_none() && ros2.is_none() {
             return Ok(None);
         }
-        Ok(Some(CellObserver::start(&self.cell, &self.shared, self.clock, page, recorder, ros2)?))
+        Ok(Some(CellObserver::start(
+            &self.cell,
+            [&self.shared, &self.of_controllers],
+            self.clock,
+            page,
+            recorder,
+            ros2,
+        )?))
     }
 }
 

@@ -83,6 +83,29 @@ radius = 80
 warning = 200
 follow = { robot = "carriage", frame = "flange" }
 robots = ["arm"]
+[encoder.belt]
+speed = 0
+wrap = 500
+measured = true
+[object.cart]
+shape = "box"
+size = [100, 100, 100]
+at = [600, 900, 400]
+measured = true
+[region.on_belt]
+shape = "sphere"
+centre = [300, -900, 400]
+radius = 80
+warning = 200
+follow = { encoder = "belt", max_speed = 2000 }
+robots = ["arm"]
+[region.on_cart]
+shape = "sphere"
+centre = [0, 0, 0]
+radius = 80
+warning = 200
+follow = { object = "cart" }
+robots = ["arm"]
 [monitor]
 stopping_distance = true
 direction_aware = true
@@ -102,6 +125,8 @@ struct Setup {
     built: usize,
     client: ControllerClient,
     carriage: ControllerClient,
+    /// The controllers of the measured sources.
+    sources: [ControllerClient; 2],
     arbiter: Arbiter,
     /// Attached volumes of the arm, in turn: none named, tools, a part, and an unknown volume.
     carried: Vec<Vec<AttachedVolume>>,
@@ -127,6 +152,7 @@ impl Setup {
             node,
             client: ControllerClient::new(1, checksum),
             carriage: ControllerClient::new(1, checksum),
+            sources: [0, checksum].map(|checksum| ControllerClient::new(1, checksum)),
             arbiter: Arbiter::new(ArbiterSettings { checksum, ..settings }, Boot(1)),
             cell,
         }
@@ -295,6 +321,15 @@ fn send_joint_states(s: &mut Setup, n: u64, now: Micros, sent: &mut Vec<u8>) {
     };
     let bytes = s.carriage.joint_state(now, &state);
     s.node.followed_joint_state(RobotId(1), bytes, now);
+    // The belt runs on; the cart swings, now and then with velocities.
+    let cart = [0.6, 0.9 + 0.02 * swing, 0.4, 0.0, 0.0, 0.0, 1.0, 0.0, 0.02 * speed, 0.0, 0.0, 0.0, 0.0];
+    let values: [(&[f64], &[f64]); 2] =
+        [(&[0.2 * t], &[0.2]), (if n.is_multiple_of(3) { &cart } else { &cart[..7] }, &[])];
+    for (index, (q, qd)) in values.into_iter().enumerate() {
+        let state = ControllerState { q, qd, programmed_override: 1.0, ..ControllerState::default() };
+        let bytes = s.sources[index].joint_state(now, &state);
+        s.node.measured(index, bytes, now);
+    }
 }
 
 /// Sends messages that must be refused: replayed, damaged, truncated, empty.
@@ -310,6 +345,7 @@ fn send_hostile(node: &NodeTick, n: u64, now: Micros, sent: &[u8], old: &mut Vec
             old[at] ^= 1 << (split_mix(random) % 8);
             node.joint_state(old, now);
             node.followed_joint_state(RobotId(1), old, now);
+            node.measured(0, old, now);
         }
         3 => node.joint_state(&sent[..sent.len() / 2], now),
         4 => node.grants(old),

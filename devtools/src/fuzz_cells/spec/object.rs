@@ -34,6 +34,8 @@ impl ObjectSpec {
         let _ = writeln!(t, "at = {}\nrpy = {}", list(&self.at), list(&self.rpy));
         if let Some(motion) = &self.motion {
             motion.write(t);
+            // As for belts: it changes nothing in a run.
+            let _ = writeln!(t, "measured = {}", motion.repeat != "no");
         }
         if let Some(belt) = &self.belt {
             let _ = writeln!(t, "follow = {{ encoder = \"{belt}\" }}");

@@ -74,7 +74,8 @@ impl BeltSpec {
             BeltTravel::Table(rows) => writeln!(t, "file = \"{}\"", table_file(rows).name),
         };
         if let Some(wrap) = wrap {
-            let _ = writeln!(t, "wrap = {wrap}");
+            // `run` moves what a live cell measures as the file says. Without a draw, so that seeds keep their cells.
+            let _ = writeln!(t, "wrap = {wrap}\nmeasured = true");
         }
         t.push('\n');
     }

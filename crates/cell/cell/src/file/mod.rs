@@ -89,9 +89,7 @@ impl CellFile {
             warnings: Vec::new(),
         };
         read_robots(&root, &mut cell, &mut warnings)?;
-        for (name, t) in root.named("encoder")? {
-            cell.frame_sources.encoders.push(region::encoder(name, &t, units)?);
-        }
+        region::read_encoders(&root, &mut cell)?;
         object::read(&root, &mut cell)?;
         let scenes = planning_scene::read(&root, &mut cell, &mut warnings)?;
         pairs(&root, &mut cell)?;

@@ -9,7 +9,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use super::definitions::encoder_index;
 use super::schema::{OBJECT, OBJECT_FOLLOW, OBJECT_MOTION, OBJECT_SHAPES, names};
-use crate::{Cell, Drive, MovingObject, ObjectPath, PathRepeat, Units};
+use crate::{Cell, Drive, MeasuredSource, MovingObject, ObjectPath, PathRepeat, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -37,11 +37,27 @@ pub(super) fn read(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
             return Err(t.error(what).hint(format!("[object.{name}_2]")));
         }
         let drive = drive(&t, cell, in_world)?;
+        if t.flag_or("measured", false)? {
+            measured(&t.need("measured", "measured = true")?, &shape, drive.as_ref())?;
+            cell.frame_sources.measured.push(MeasuredSource::Object(ObjectId(cell.objects.len())));
+        }
         let moving_object =
             drive.map(|drive| MovingObject { object: ObjectId(cell.objects.len()), rest_in_world: in_world, drive });
         let in_world = moving_object.as_ref().map_or(in_world, |m| m.pose(0.0));
         cell.objects.push(Object { name: name.to_owned(), shape, in_world });
         cell.moving_objects.extend(moving_object);
+    }
+    Ok(())
+}
+
+/// Refuses `measured` for an object whose pose cannot arrive by itself.
+fn measured(v: &Value<'_>, shape: &Shape, drive: Option<&Drive>) -> Result<()> {
+    if matches!(shape, Shape::HalfSpace(_)) {
+        return Err(v.error("moves a plane, which is unbounded").hint("shape = \"box\", as large as what moves"));
+    }
+    if matches!(drive, Some(Drive::Belt(_))) {
+        let hint = "measured = true   in the table of the encoder";
+        return Err(v.error("contradicts `follow`: the object is where its encoder brings it").hint(hint));
     }
     Ok(())
 }

@@ -14,7 +14,7 @@ use super::mechanism::{self, NOT_GUARDED};
 use super::schema::{ENCODER, FENCE, REGION, REGION_SHAPES, names};
 use super::{fence, follow, models};
 use crate::cell::guarded;
-use crate::{CellRegion, Encoder, Follow, RegionSolid, Travel, Units};
+use crate::{Cell, CellRegion, Encoder, Follow, MeasuredSource, RegionSolid, Travel, Units};
 
 type Result<T> = std::result::Result<T, Diagnostic>;
 
@@ -304,7 +304,18 @@ fn robots(t: &Table<'_>, known: &Definitions<'_>, follow: Option<Follow>) -> Res
     Ok(robots)
 }
 
-pub(super) fn encoder(name: &str, t: &Table<'_>, units: Units) -> Result<Encoder> {
+pub(super) fn read_encoders(root: &Table<'_>, cell: &mut Cell) -> Result<()> {
+    let sources = &mut cell.frame_sources;
+    for (index, (name, t)) in root.named("encoder")?.into_iter().enumerate() {
+        sources.encoders.push(encoder(name, &t, cell.units)?);
+        if t.flag_or("measured", false)? {
+            sources.measured.push(MeasuredSource::Encoder(index));
+        }
+    }
+    Ok(())
+}
+
+fn encoder(name: &str, t: &Table<'_>, units: Units) -> Result<Encoder> {
     t.only(&names(&[ENCODER]))?;
     let direction = t.get("direction").map_or(Ok(Vec3::X), |v| {
         v.three()?.try_normalize().ok_or_else(|| v.error("has no length").hint("direction = [1, 0, 0]"))

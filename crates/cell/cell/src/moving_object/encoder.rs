@@ -1,6 +1,6 @@
 //! Encoders: the travel of conveyors and rails over time.
 
-use elbowroom_spatial::Vec3;
+use elbowroom_spatial::{FrameMotion, Pose, Vec3};
 
 /// A conveyor or a rail: motion along a line.
 #[derive(Debug, Clone)]
@@ -38,6 +38,13 @@ impl Encoder {
     pub fn at(&self, t_s: f64) -> (f64, f64) {
         let (travel, speed) = self.travelled(t_s);
         (self.wrap_m.map_or(travel, |wrap| travel.rem_euclid(wrap)), speed)
+    }
+
+    /// Displacement and velocity of what the belt carries, after a travel (m) that has not wrapped yet, at a speed (m/s).
+    pub fn displacement(&self, travel_m: f64, speed: f64) -> (Pose, FrameMotion) {
+        let travel_m = self.wrap_m.map_or(travel_m, |wrap| travel_m.rem_euclid(wrap));
+        let motion = FrameMotion { velocity: self.direction * speed, ..FrameMotion::REST };
+        (Pose::from_translation(self.direction * travel_m), motion)
     }
 
     /// Passes every number that defines the motion, for a checksum. A new field must be added here.

@@ -7,7 +7,7 @@ use elbowroom_robot::ObjectId;
 use sha2::{Digest, Sha256};
 
 use super::value::{key, text};
-use crate::{Cell, CellFile, CellRegion, Drive, Follow, MovingObject};
+use crate::{Cell, CellFile, CellRegion, Drive, Follow, Frames, MovingObject};
 
 /// The source that a region follows.
 pub(super) struct SealedSource<'a> {
@@ -95,6 +95,9 @@ fn checksum(cell: &Cell, follow: Follow, limits: &SourceLimits) -> String {
             let at_rest = object(cell, i, &mut number);
             hash.update(at_rest);
         }
+    }
+    if Frames::new(cell).measured_source(&follow).is_some() {
+        hash.update(b"measured");
     }
     hex::encode(&hash.finalize())
 }

@@ -1,14 +1,23 @@
 //! Distance of robots from a region that is to be switched on or moved.
 
 use elbowroom_cell::configure::MonitorSetup;
-use elbowroom_cell::{Cell, CellRegion, Frames, configure};
+use elbowroom_cell::{Cell, CellRegion, Follow, Frames, configure};
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Life, Monitor, RegionKind, SourceState};
 use elbowroom_robot::RobotId;
+use elbowroom_spatial::{FrameMotion, Pose};
 
 use crate::messages::JointState;
 use crate::node::AttachedVolumes;
+
+/// Where the robots and the measured sources of a cell are; `None` for those that are not heard.
+pub(crate) struct HeardPlaces {
+    /// Joint states per robot.
+    pub(crate) joints: Vec<Option<JointState>>,
+    /// States per measured source.
+    pub(crate) measured: Vec<Option<SourceState>>,
+}
 
 /// A robot and its distance from a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,10 +40,10 @@ const UNTIL_IT_COUNTS_S: f64 = 0.2;
 pub(crate) fn clearances(
     cell: &Cell,
     region: &CellRegion,
-    states: &[Option<JointState>],
+    places: &HeardPlaces,
     t_s: f64,
 ) -> Result<Vec<Clearance>, Diagnostic> {
-    Ok(ClearanceQuery::new(cell, region)?.clearances(states, t_s))
+    Ok(ClearanceQuery::new(cell, region)?.clearances(places, t_s))
 }
 
 /// The monitor of one robot, with what the robot carries.
@@ -71,16 +80,17 @@ impl ClearanceQuery {
 
     /// The distances at these joint values, with the parts that the robots carry.
     ///
-    /// A robot has no distance if it is not heard, or if the region follows a robot that is not heard. A region that
-    /// follows an encoder or a path is at its place `t_s` after the start of this process.
-    pub(crate) fn clearances(&mut self, states: &[Option<JointState>], t_s: f64) -> Vec<Clearance> {
+    /// A robot has no distance if it is not heard, or if the region follows a robot or a measured source that is not
+    /// heard. A region that follows another encoder or a path is at its place `t_s` after the start of this process.
+    pub(crate) fn clearances(&mut self, places: &HeardPlaces, t_s: f64) -> Vec<Clearance> {
         let Self { alone, setups, monitors } = self;
+        let HeardPlaces { joints: states, measured } = places;
         let chains: Vec<Option<ChainState>> =
             alone.robots.iter().zip(states).map(|(r, s)| placed(r, s.as_ref())).collect();
         let of_robot = |own: &mut RobotMonitor| {
             let robot = own.robot;
             let state = states[robot.0].as_ref().filter(|_| chains[robot.0].is_some());
-            let sources = sources(alone, &setups[robot.0].sources, &chains, t_s);
+            let sources = sources(alone, &setups[robot.0].sources, &chains, measured, t_s);
             let known = state.zip(sources).and_then(|(state, sources)| own.distance(alone, state, &sources));
             let (distance_m, stopping_m) =
                 known.map_or((None, 0.0), |(distance_m, stopping_m)| (Some(distance_m), stopping_m));
@@ -133,16 +143,20 @@ fn placed(robot: &elbowroom_cell::CellRobot, state: Option<&JointState>) -> Opti
     Some(placed)
 }
 
-/// States of the sources that the region follows; `None` if one of them is a robot that is not heard.
+/// States of the sources that the region follows; `None` if one of them is a robot or a measured source that is not heard.
 fn sources(
     cell: &Cell,
-    follows: &[elbowroom_cell::Follow],
+    follows: &[Follow],
     chains: &[Option<ChainState>],
+    measured: &[Option<SourceState>],
     t_s: f64,
 ) -> Option<Vec<SourceState>> {
-    let is_known = |f: &elbowroom_cell::Follow| match f {
-        elbowroom_cell::Follow::Robot { robot, .. } => chains[robot.0].is_some(),
-        _ => true,
+    let at_rest = SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: t_s };
+    let states: Vec<SourceState> = measured.iter().map(|state| state.unwrap_or(at_rest)).collect();
+    let frames = Frames::with_measured(cell, &states);
+    let is_known = |f: &Follow| match (f, frames.measured_source(f)) {
+        (Follow::Robot { robot, .. }, _) => chains[robot.0].is_some(),
+        (_, source) => source.is_none_or(|index| measured[index].is_some()),
     };
     if !follows.iter().all(is_known) {
         return None;
@@ -151,7 +165,7 @@ fn sources(
         chain.clone().unwrap_or_else(|| ChainState::new(&robot.robot.chain))
     };
     let all: Vec<ChainState> = chains.iter().zip(&cell.robots).map(or_start).collect();
-    Some(Frames::new(cell).sources(follows, &all, t_s))
+    Some(frames.sources(follows, &all, t_s))
 }
 
 #[cfg(test)]
@@ -184,6 +198,10 @@ warning = 100
 follow = { robot = "other", frame = "flange" }
 "#;
 
+    fn heard(joints: [Option<JointState>; 2]) -> HeardPlaces {
+        HeardPlaces { joints: joints.into(), measured: Vec::new() }
+    }
+
     fn at(q: f64) -> JointState {
         JointState { q: vec![q], qd: vec![0.0], ..JointState::default() }
     }
@@ -191,20 +209,20 @@ follow = { robot = "other", frame = "flange" }
     #[test]
     fn distances_are_those_of_the_arm_at_its_joint_values() {
         let cell = Cell::parse("rails.toml", CELL).unwrap_or_else(|e| panic!("{e}"));
-        let distance = |region: usize, states: &[Option<JointState>]| {
-            let found = clearances(&cell, &cell.regions[region], states, 0.0).unwrap();
+        let distance = |region: usize, states: [Option<JointState>; 2]| {
+            let found = clearances(&cell, &cell.regions[region], &heard(states), 0.0).unwrap();
             found.iter().map(|c| c.distance_m).collect::<Vec<_>>()
         };
         let near = |a: Option<f64>, b: f64| a.is_some_and(|a| (a - b).abs() < 1e-6);
-        let far = distance(0, &[Some(at(1.0)), Some(at(0.0))]);
+        let far = distance(0, [Some(at(1.0)), Some(at(0.0))]);
         assert!(near(far[0], 0.25), "{far:?}");
         assert!(far[1].is_some_and(|d| d > 2.0));
-        assert_eq!(distance(0, &[Some(at(1.5)), None]), [Some(0.0), None]);
-        assert_eq!(distance(0, &[Some(at(f64::NAN)), Some(at(0.0))])[0], None);
+        assert_eq!(distance(0, [Some(at(1.5)), None]), [Some(0.0), None]);
+        assert_eq!(distance(0, [Some(at(f64::NAN)), Some(at(0.0))])[0], None);
         // The region is where the other robot is: as far along its own rail.
-        let follows = distance(1, &[Some(at(0.5)), Some(at(1.0))]);
+        let follows = distance(1, [Some(at(0.5)), Some(at(1.0))]);
         assert!(follows.len() == 1 && near(follows[0], 0.25), "{follows:?}");
-        assert_eq!(distance(1, &[Some(at(0.5)), None]), [None]);
+        assert_eq!(distance(1, [Some(at(0.5)), None]), [None]);
     }
 
     /// The tool that is mounted at the start counts until the controller names another one; a query is asked again and again.
@@ -231,7 +249,7 @@ follow = { robot = "other", frame = "flange" }
             (Vec::new(), Some(1.25)),
         ] {
             let state = JointState { attached: named, ..at(0.0) };
-            let found = query.clearances(&[Some(state), None], 0.0)[0].distance_m;
+            let found = query.clearances(&heard([Some(state), None]), 0.0)[0].distance_m;
             let agree = match (found, expected) {
                 (Some(a), Some(b)) => (a - b).abs() < 1e-6,
                 (found, expected) => found == expected,
@@ -245,7 +263,7 @@ follow = { robot = "other", frame = "flange" }
         let cell = Cell::parse("rails.toml", CELL).unwrap_or_else(|e| panic!("{e}"));
         let moving = |qd: Vec<f64>| {
             let state = JointState { q: vec![0.5], qd, ..JointState::default() };
-            clearances(&cell, &cell.regions[0], &[Some(state), None], 0.0).unwrap()[0].stopping_m
+            clearances(&cell, &cell.regions[0], &heard([Some(state), None]), 0.0).unwrap()[0].stopping_m
         };
         let braking_m = 0.5 * 0.5 / (2.0 * cell.robots[0].limits[0].stop);
         let expected = 0.5 * (UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s) + braking_m;

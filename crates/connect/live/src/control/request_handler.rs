@@ -8,7 +8,7 @@ use elbowroom_monitor::{AccessClass, Life, RegionKind};
 use elbowroom_robot::RobotId;
 use serde::Serialize;
 
-use super::clearance::{ClearanceQuery, clearances};
+use super::clearance::{ClearanceQuery, HeardPlaces, clearances};
 use super::joints_heard::JointsHeard;
 use super::nodes_heard::NodesHeard;
 use super::refusal::Refusal;
@@ -20,6 +20,7 @@ use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
 use crate::event_handler::EventHandler;
 use crate::locked::locked;
+use crate::measured_sources::MeasuredSources;
 use crate::region_keeper::RegionKeeper;
 
 /// Longest note, bytes.
@@ -32,9 +33,17 @@ pub(crate) struct ControlParts {
     /// `None` for a cell without exchange regions.
     pub(crate) arbiter: Option<Arc<ArbiterService>>,
     pub(crate) joints: JointsHeard,
+    pub(crate) measured: MeasuredSources,
     pub(crate) nodes: NodesHeard,
     pub(crate) clock: Clock,
     pub(crate) on_event: Option<EventHandler>,
+}
+
+impl ControlParts {
+    /// Where everything is.
+    pub(super) fn places(&self) -> HeardPlaces {
+        HeardPlaces { joints: self.joints.states(), measured: self.measured.states() }
+    }
 }
 
 /// Handles one request at a time.
@@ -287,8 +296,7 @@ impl RequestHandler {
         if matches!(region.region.kind, RegionKind::Monitored { .. }) {
             return Ok(Vec::new());
         }
-        let ControlParts { joints, clock, .. } = &self.parts;
-        let found = clearances(cell, region, &joints.states(), clock.seconds())?;
+        let found = clearances(cell, region, &self.parts.places(), self.parts.clock.seconds())?;
         let name = |robot: RobotId| cell.robots[robot.0].name.clone();
         if let Some((near, distance_m)) =
             found.iter().find_map(|c| Some((c, c.distance_m.filter(|d| *d <= c.stopping_m)?)))

@@ -39,7 +39,7 @@ impl RequestHandler {
             let region = CellRegion { robots: vec![robot], ..region.clone() };
             Ok::<_, Refusal>(ClearanceQuery::new(&alone, &region)?)
         })?;
-        let found = query.clearances(&self.parts.joints.states(), self.parts.clock.seconds());
+        let found = query.clearances(&self.parts.places(), self.parts.clock.seconds());
         let distance_m = found.first().and_then(|clearance| clearance.distance_m);
         Ok(Distance { robot: request.robot.clone(), distance_m })
     }

@@ -6,7 +6,7 @@ use elbowroom_kinematics::{Chain, ChainState};
 use super::inbox::Heard;
 
 /// Longest time between two positions that give a velocity.
-const SAME_MOTION: Micros = Micros(100_000);
+pub(super) const SAME_MOTION: Micros = Micros(100_000);
 
 /// State of a robot that is followed.
 #[derive(Debug, Clone, Default)]

@@ -17,6 +17,7 @@ use super::attached_volumes::AttachedVolumes;
 use super::doubt::Doubt;
 use super::followed_robot::FollowedRobot;
 use super::inbox::Contents;
+use super::measured_frame::MeasuredFrame;
 use super::next_configuration::{NextConfiguration, NodeVersion};
 use super::node_monitor::NodeMonitor;
 use super::standstill::Standstill;
@@ -29,7 +30,7 @@ pub(super) struct GuardedRobot {
     setup: MonitorSetup,
     monitor: NodeMonitor,
     own: OwnJoints,
-    others: OtherRobots,
+    carriers: Carriers,
     sources: Vec<SourceState>,
     attached: AttachedVolumes,
     /// Whether each region of the cell is on.
@@ -62,11 +63,17 @@ impl OwnJoints {
     }
 }
 
-/// The robots of the cell as sources of regions; only the followed ones are up to date.
-struct OtherRobots {
+/// What regions can follow: the robots of the cell, of which only the followed ones are up to date, and measured sources.
+struct Carriers {
     chains: Vec<ChainState>,
     followed: Vec<FollowedRobot>,
+    measured: Vec<MeasuredFrame>,
+    /// States of the measured sources in the present tick.
+    measured_states: Vec<SourceState>,
 }
+
+/// State of a source that is not known.
+const LOST: SourceState = SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: f64::NEG_INFINITY };
 
 impl GuardedRobot {
     pub(super) fn new(
@@ -83,9 +90,11 @@ impl GuardedRobot {
                 now: Micros(0),
                 standstill: Standstill::new(MAX_JOINTS),
             },
-            others: OtherRobots {
+            carriers: Carriers {
                 chains: cell.robots.iter().map(|r| ChainState::new(&r.robot.chain)).collect(),
                 followed: vec![FollowedRobot::default(); cell.robots.len()],
+                measured: MeasuredFrame::all(&cell),
+                measured_states: Vec::with_capacity(cell.frame_sources.measured.len()),
             },
             sources: Vec::with_capacity(setup.sources.len()),
             attached: AttachedVolumes::new(&setup.configuration),
@@ -111,10 +120,13 @@ impl GuardedRobot {
             self.own.standstill.hear(self.own.state.boot);
         }
         self.own.now = inbox.own.now(now);
+        let Carriers { chains, followed, measured, .. } = &mut self.carriers;
         for (robot, heard) in inbox.followed.iter_mut().enumerate() {
             let Some(heard) = heard else { continue };
-            let OtherRobots { chains, followed } = &mut self.others;
             followed[robot].take(heard, &self.cell.robots[robot].robot.chain, &mut chains[robot], now);
+        }
+        for (frame, heard) in measured.iter_mut().zip(&mut inbox.measured) {
+            frame.take(heard, &self.cell, now);
         }
         if std::mem::take(&mut inbox.has_grants) {
             self.monitor.receive(&inbox.grants);
@@ -299,22 +311,23 @@ impl GuardedRobot {
     }
 
     fn place_sources(&mut self, now: Micros) {
-        let Self { cell, setup, others: OtherRobots { chains, followed }, sources, .. } = self;
-        let frames = Frames::new(cell);
+        let Self { cell, setup, carriers, sources, .. } = self;
+        let Carriers { chains, followed, measured, measured_states } = carriers;
+        measured_states.clear();
+        measured_states.extend(measured.iter().map(|frame| frame.state(cell).unwrap_or(LOST)));
+        let frames = Frames::with_measured(cell, measured_states);
         sources.clear();
         for follow in &setup.sources {
             // Stamps are on the clock of this robot's controller, like those of its joint values.
-            let age = match follow {
-                Follow::Robot { robot, .. } => followed[robot.0].age,
-                _ => Some(Micros(0)),
+            let age = match (follow, frames.measured_source(follow)) {
+                (Follow::Robot { robot, .. }, _) => followed[robot.0].age,
+                (_, Some(source)) => measured[source].age,
+                (_, None) => Some(Micros(0)),
             };
-            sources.push(match age {
-                Some(age) => SourceState {
-                    stamp_s: seconds(self.own.now) - seconds(age),
-                    ..frames.source(follow, chains, seconds(now))
-                },
-                None => SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: f64::NEG_INFINITY },
-            });
+            sources.push(age.map_or(LOST, |age| SourceState {
+                stamp_s: seconds(self.own.now) - seconds(age),
+                ..frames.source(follow, chains, seconds(now))
+            }));
         }
     }
 }

@@ -32,6 +32,8 @@ pub(super) struct Contents {
     pub(super) own: Heard,
     /// The joint states of the robots that its regions follow, by their index in the cell; `None` for all others.
     pub(super) followed: Vec<Option<Heard>>,
+    /// The messages of the measured sources of the cell.
+    pub(super) measured: Vec<Heard>,
     /// The bytes of the last message of the arbiter, and whether it is new.
     pub(super) grants: Vec<u8>,
     pub(super) has_grants: bool,
@@ -86,8 +88,17 @@ impl Heard {
     /// Accepts controllers of this configuration; also controllers that accept any, if the cell has no exchange regions.
     pub(crate) fn new(checksum: u64, cell: &Cell) -> Self {
         let has_exchange = configure::slots(cell).iter().any(Option::is_some);
+        Self::through(InputGate::new(checksum).needs_configuration(has_exchange))
+    }
+
+    /// Accepts those who measure encoders and objects, of this configuration or of any.
+    pub(crate) fn of_source(checksum: u64) -> Self {
+        Self::through(InputGate::new(checksum))
+    }
+
+    fn through(gate: InputGate) -> Self {
         Self {
-            gate: InputGate::new(checksum).needs_configuration(has_exchange),
+            gate,
             scratch: JointState::with_capacity(),
             state: JointState::with_capacity(),
             stamp: None,
@@ -131,6 +142,7 @@ impl Inbox {
         let contents = Contents {
             own: Heard::new(checksum, cell),
             followed: followed.into_iter().map(|is| is.then(|| Heard::new(checksum, cell))).collect(),
+            measured: vec![Heard::of_source(checksum); cell.frame_sources.measured.len()],
             grants: Vec::with_capacity(MAX_BYTES),
             has_grants: false,
             regions: RegionTable::initial(cell),
@@ -170,6 +182,13 @@ impl Inbox {
     /// Reads a joint state of a robot that a region follows.
     pub(super) fn take_followed(&self, robot: RobotId, bytes: &[u8], arrived: Micros) {
         if let Some(Some(heard)) = self.lock().followed.get_mut(robot.0) {
+            heard.take(bytes, arrived);
+        }
+    }
+
+    /// Reads a message of a measured source, by its index in the cell.
+    pub(super) fn take_measured(&self, index: usize, bytes: &[u8], arrived: Micros) {
+        if let Some(heard) = self.lock().measured.get_mut(index) {
             heard.take(bytes, arrived);
         }
     }

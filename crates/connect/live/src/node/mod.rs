@@ -10,6 +10,7 @@ mod followed_robot;
 mod guarded_robot;
 mod inbox;
 mod input_gate;
+mod measured_frame;
 mod next_configuration;
 mod node_monitor;
 mod node_tick;
@@ -34,6 +35,7 @@ use elbowroom_recording::TickRecorder;
 use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
 use crate::keys::Keys;
+use crate::measured_sources::key_of;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::regions_table::RegionTableMessage;
 use doubt::Doubt;
@@ -45,6 +47,7 @@ use outbox::Outbox;
 pub(crate) use attached_volumes::AttachedVolumes;
 pub(crate) use inbox::Heard;
 pub use input_gate::{InputGate, Rejected};
+pub(crate) use measured_frame::MeasuredFrame;
 pub use node_monitor::NodeMonitor;
 pub use node_tick::NodeTick;
 pub use region_builder::{RegionBuilder, RegionsError};
@@ -169,6 +172,11 @@ fn subscribe(
         let inbox = inbox.clone();
         let handler = Box::new(move |bytes: &[u8]| inbox.take_followed(RobotId(other), bytes, clock.micros()));
         subscriptions.push(network.subscribe(&keys.joint_states(&cell.robots[other].name), handler)?);
+    }
+    for (index, source) in cell.frame_sources.measured.iter().enumerate() {
+        let inbox = inbox.clone();
+        let handler = Box::new(move |bytes: &[u8]| inbox.take_measured(index, bytes, clock.micros()));
+        subscriptions.push(network.subscribe(&key_of(keys, cell, *source), handler)?);
     }
     let inbox = inbox.clone();
     let handler = Box::new(move |bytes: &[u8]| {

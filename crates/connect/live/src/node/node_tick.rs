@@ -103,6 +103,12 @@ impl NodeTick {
         self.inbox.take_followed(robot, bytes, arrived);
     }
 
+    /// Puts in a message of a measured source, by its index in
+    /// [`FrameSources::measured`](elbowroom_cell::FrameSources::measured).
+    pub fn measured(&self, index: usize, bytes: &[u8], arrived: Micros) {
+        self.inbox.take_measured(index, bytes, arrived);
+    }
+
     /// Puts in a message of the arbiter.
     pub fn grants(&self, bytes: &[u8]) {
         self.inbox.take_grants(bytes);

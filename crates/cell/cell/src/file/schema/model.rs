@@ -95,6 +95,7 @@ pub(in crate::file) const OBJECT: &[Key] = &[
     key("quaternion", "`[x, y, z, w]`", "none", "instead of `rpy`"),
     key("follow", "table", "none", "`{ encoder = \"belt\" }`: the object moves with this encoder"),
     key("motion", "table", "none", "it moves by itself, starting at `at`; either `follow` or `motion`"),
+    key("measured", "boolean", "false", "`live`: its pose arrives [over the network](live.md#measured-encoders-and-objects)"),
 ];
 
 #[rustfmt::skip] // a row per shape, as in the document

@@ -78,4 +78,5 @@ pub(in crate::file) const ENCODER: &[Key] = &[
     key("end", "seconds", "never", "time at which it stops"),
     key("wrap", "length", "none", "travel after which it begins again at 0"),
     key("file", "path", "`speed` or `file` required", "CSV with the columns `t_s,travel_m` (seconds, metres), linear between rows"),
+    key("measured", "boolean", "false", "`live`: the travel arrives [over the network](live.md#measured-encoders-and-objects)"),
 ];
