@@ -17,7 +17,7 @@ import pytest
 import elbowroom as er
 from conftest import ROOT
 
-CALLS = int(os.environ.get("ELBOWROOM_RANDOM_CALLS", "1000"))
+CALLS = int(os.environ.get("ELBOWROOM_RANDOM_CALLS", "500"))
 
 #: What a call may raise: exceptions of the package, and those of Python for arguments of a wrong type or size, or of a wrong number.
 EXPECTED = (er.Error, TypeError, OverflowError)

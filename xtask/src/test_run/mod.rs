@@ -13,6 +13,7 @@ mod times;
 mod units;
 
 use std::collections::VecDeque;
+use std::ops::AddAssign;
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -50,6 +51,14 @@ pub struct Counts {
     ignored: usize,
 }
 
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.ignored += other.ignored;
+    }
+}
+
 /// Compiles the tests that cargo selects by `args`, and runs the chosen ones. Once all is compiled, one of the workers
 /// first calls `beside`.
 ///
@@ -69,10 +78,10 @@ pub fn run(
     let all = units::units(&programs)?;
     let total = all.len();
     let is_chosen = |unit: &Unit| times.expected(&unit.name) <= (choice.longest)(&programs[unit.program]);
-    let (mut chosen, mut unchanged) = (Vec::new(), 0);
+    let (mut chosen, mut unchanged) = (Vec::new(), Counts::default());
     for unit in all.into_iter().filter(is_chosen) {
         match passes.of(&unit).filter(|_| !choice.again) {
-            Some(tests) => unchanged += tests,
+            Some(counts) => unchanged += counts,
             None => chosen.push(unit),
         }
     }
@@ -81,9 +90,12 @@ pub fn run(
     }
     let progress = Progress { open: longest_first(chosen, &times), times, passes, ..Progress::default() };
     let Progress { counts, failed, .. } = run_units(&programs, progress, env, beside);
-    let known = if unchanged > 0 { format!(" ({unchanged} before, unchanged since)") } else { String::new() };
-    println!("{} passed{known}, {} failed, {} skipped", counts.passed + unchanged, counts.failed, counts.ignored);
-    if counts == Counts::default() && unchanged == 0 {
+    let before = unchanged.passed;
+    let known = if before > 0 { format!(" ({before} before, unchanged since)") } else { String::new() };
+    let mut all = counts;
+    all += unchanged;
+    println!("{} passed{known}, {} failed, {} skipped", all.passed, all.failed, all.ignored);
+    if all == Counts::default() {
         return Err("no test ran".into());
     }
     if failed.is_empty() { Ok(()) } else { Err(format!("failed: {}", failed.join(", "))) }
@@ -161,9 +173,7 @@ fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
         // A process that dies prints no result line: all its tests count as failed.
         counts(&ended.output).unwrap_or(Counts { failed: unit.tests.len(), ..Counts::default() })
     };
-    progress.counts.passed += counts.passed;
-    progress.counts.failed += counts.failed;
-    progress.counts.ignored += counts.ignored;
+    progress.counts += counts;
     let ok = ended.ok && counts.failed == 0;
     println!(
         "{} {:>6.1} s  {:>4}  {}",
@@ -174,8 +184,8 @@ fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
     );
     // A test without its data or its reference passes, and prints a line.
     let left_out: Vec<&str> = ended.output.lines().filter(|line| line.contains("skipped:")).map(str::trim).collect();
-    let all_ran = ok && counts.ignored == 0 && left_out.is_empty();
-    progress.passes.keep(unit, all_ran.then_some(counts.passed));
+    let all_ran = ok && left_out.is_empty();
+    progress.passes.keep(unit, all_ran.then_some(counts));
     if ok {
         progress.times.keep(&unit.name, time);
         for line in left_out {

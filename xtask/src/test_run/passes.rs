@@ -12,17 +12,20 @@ use std::path::{Path, PathBuf};
 
 use xtask::{call, shell};
 
+use super::Counts;
 use super::programs::Program;
 use super::units::Unit;
 
 /// The crate below `crates` whose tests read the folder `python`.
 const READS_PACKAGE: &str = "front/python";
 
-/// A unit that passed: the hash of its program and files, and the number of its tests.
+/// A unit that passed: the hash of its program and files, and the numbers of its tests. Tests that the program ignores
+/// are ignored until it changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Pass {
     stamp: u64,
-    tests: usize,
+    passed: usize,
+    ignored: usize,
 }
 
 /// Units that passed in their last run.
@@ -60,23 +63,26 @@ impl Passes {
         Self { file, stamps: programs.iter().map(stamp).collect(), known: text.lines().filter_map(entry).collect() }
     }
 
-    /// Number of the unit's passed tests, if neither its program nor a file that it may read has changed since.
-    pub fn of(&self, unit: &Unit) -> Option<usize> {
-        let pass = self.known.get(&unit.name)?;
-        (self.stamps[unit.program] == Some(pass.stamp)).then_some(pass.tests)
+    /// Counts of the unit's tests, if it passed and neither its program nor a file that it may read has changed since.
+    pub fn of(&self, unit: &Unit) -> Option<Counts> {
+        let Pass { stamp, passed, ignored } = *self.known.get(&unit.name)?;
+        (self.stamps[unit.program] == Some(stamp)).then_some(Counts { passed, failed: 0, ignored })
     }
 
-    /// Records the result of a unit: `passed` is the number of its tests if all of them ran and passed.
-    pub fn keep(&mut self, unit: &Unit, passed: Option<usize>) {
+    /// Records the result of a unit: `counts` are those of its tests if none failed, and none lacked its data.
+    pub fn keep(&mut self, unit: &Unit, counts: Option<Counts>) {
         self.known.remove(&unit.name);
-        if let (Some(tests), Some(stamp)) = (passed, self.stamps.get(unit.program).copied().flatten()) {
-            self.known.insert(unit.name.clone(), Pass { stamp, tests });
+        if let (Some(Counts { passed, ignored, .. }), Some(stamp)) =
+            (counts, self.stamps.get(unit.program).copied().flatten())
+        {
+            self.known.insert(unit.name.clone(), Pass { stamp, passed, ignored });
         }
     }
 
     /// Writes the file. Without it all units run next time, so a failed write is reported but is not an error.
     pub fn write(&self) {
-        let line = |(name, Pass { stamp, tests }): (&String, &Pass)| format!("{name} {stamp:x} {tests}");
+        let line =
+            |(name, Pass { stamp, passed, ignored }): (&String, &Pass)| format!("{name} {stamp:x} {passed} {ignored}");
         let mut lines: Vec<String> = self.known.iter().map(line).collect();
         lines.sort();
         if let Err(e) = std::fs::write(&self.file, lines.join("\n") + "\n") {
@@ -88,8 +94,9 @@ impl Passes {
 /// Parses a line of the file.
 fn entry(line: &str) -> Option<(String, Pass)> {
     let mut words = line.split(' ');
-    let (name, stamp, tests) = (words.next()?, words.next()?, words.next()?);
-    Some((name.to_owned(), Pass { stamp: u64::from_str_radix(stamp, 16).ok()?, tests: tests.parse().ok()? }))
+    let (name, stamp) = (words.next()?, u64::from_str_radix(words.next()?, 16).ok()?);
+    let mut number = || words.next()?.parse().ok();
+    Some((name.to_owned(), Pass { stamp, passed: number()?, ignored: number()? }))
 }
 
 /// Hashes of what tests may read besides their program.
@@ -153,6 +160,8 @@ mod tests {
         }
     }
 
+    const PASSED: Counts = Counts { passed: 3, failed: 0, ignored: 1 };
+
     /// Makes a repository with a file that tests read.
     fn repository() -> tempfile::TempDir {
         let root = tempfile::tempdir().unwrap();
@@ -173,21 +182,21 @@ mod tests {
         let passed_with = |env: &[(&str, &str)]| {
             let mut passes = Passes::of_file(root.join("target/passes"), root, &here, env);
             let before = passes.of(&unit);
-            passes.keep(&unit, Some(3));
+            passes.keep(&unit, Some(PASSED));
             passes.write();
             before
         };
         std::fs::write(&executable, "one").unwrap();
-        assert_eq!((passed_with(&[]), passed_with(&[])), (None, Some(3)));
+        assert_eq!((passed_with(&[]), passed_with(&[])), (None, Some(PASSED)));
         assert_eq!((passed_with(&[("A", "b")]), passed_with(&[])), (None, None));
         for file in ["target/main", "target/main.started", "cell.toml"] {
             std::fs::write(root.join(file), "another text").unwrap();
-            assert_eq!((passed_with(&[]), passed_with(&[])), (None, Some(3)), "{file}");
+            assert_eq!((passed_with(&[]), passed_with(&[])), (None, Some(PASSED)), "{file}");
         }
         // Sources are compiled into the program, and no test reads documents.
         for file in ["crates/a/lib.rs", "README.md"] {
             std::fs::write(root.join(file), "text").unwrap();
-            assert_eq!(passed_with(&[]), Some(3), "{file}");
+            assert_eq!(passed_with(&[]), Some(PASSED), "{file}");
         }
         // The unit fails now.
         let mut passes = Passes::of_file(root.join("target/passes"), root, &here, &[]);
@@ -223,7 +232,7 @@ mod tests {
 
     #[test]
     fn a_line_of_the_file_is_read_and_another_is_not() {
-        assert_eq!(entry("a/main/b 1f 7"), Some(("a/main/b".into(), Pass { stamp: 31, tests: 7 })));
-        assert_eq!(entry("a/main/b 1f"), None);
+        assert_eq!(entry("a/main/b 1f 7 1"), Some(("a/main/b".into(), Pass { stamp: 31, passed: 7, ignored: 1 })));
+        assert_eq!((entry("a/main/b 1f"), entry("a/main/b 1f 7")), (None, None));
     }
 }
