@@ -3,6 +3,7 @@
 //! `cargo test` runs one program after another, so that most cores wait at the end of each. Here each worker runs its unit on one
 //! thread: tests of different units run at once, tests of one module never do.
 
+mod counts;
 mod first_failure;
 mod lock;
 mod passes;
@@ -13,11 +14,11 @@ mod times;
 mod units;
 
 use std::collections::VecDeque;
-use std::ops::AddAssign;
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use counts::{Counts, counts};
 pub use first_failure::{FirstFailure, first_failure, passes};
 pub use lock::locked;
 use passes::Passes;
@@ -41,22 +42,6 @@ pub struct Choice<'a> {
     pub longest: &'a dyn Fn(&Program) -> f64,
     /// Whether units run too that passed before and could not fail now.
     pub again: bool,
-}
-
-/// Numbers of tests that passed, failed, and were left out.
-#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
-pub struct Counts {
-    passed: usize,
-    failed: usize,
-    ignored: usize,
-}
-
-impl AddAssign for Counts {
-    fn add_assign(&mut self, other: Self) {
-        self.passed += other.passed;
-        self.failed += other.failed;
-        self.ignored += other.ignored;
-    }
 }
 
 /// Compiles the tests that cargo selects by `args`, and runs the chosen ones. Once all is compiled, one of the workers
@@ -197,26 +182,9 @@ fn report(progress: &mut Progress, unit: &Unit, ended: &Ended, time: Duration) {
     }
 }
 
-/// Parses the numbers of the harness's last line: `test result: ok. 3 passed; 0 failed; 1 ignored; …`.
-fn counts(output: &str) -> Option<Counts> {
-    let line = output.lines().rev().find(|line| line.starts_with("test result:"))?;
-    let number = |what: &str| {
-        let before = line.split([';', '.']).find(|part| part.trim().ends_with(what))?;
-        before.split_whitespace().next()?.parse().ok()
-    };
-    Some(Counts { passed: number("passed")?, failed: number("failed")?, ignored: number("ignored")? })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_line_of_the_harness_is_read() {
-        let line = "running 4 tests\ntest result: FAILED. 2 passed; 1 failed; 1 ignored; 0 measured; 0 filtered out; finished in 0.00s\n";
-        assert_eq!(counts(line), Some(Counts { passed: 2, failed: 1, ignored: 1 }));
-        assert_eq!(counts("thread 'main' has overflowed its stack"), None);
-    }
 
     #[test]
     fn a_program_that_dies_fails_with_all_its_tests() {

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use xtask::{call, shell};
 
-use super::Counts;
+use super::counts::Counts;
 use super::programs::Program;
 use super::units::Unit;
 
