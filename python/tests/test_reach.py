@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import pickle
 from pathlib import Path
 from typing import Any
@@ -107,9 +108,14 @@ def test_what_is_no_robot_is_told(exchange: Path) -> None:
         er.ReachQuery(robot).evaluate(np.ones((1, 6)), np.zeros((4, 4)))
 
 
+@functools.cache
+def reach_of_two_turns() -> er.ReachQuery:
+    return er.ReachQuery(er.Robot.load(RX60B), turns=2)
+
+
 @given(st.integers(0, 40), st.integers(0, 2**32 - 1), st.floats(-1e6, 1e6))
 @settings(max_examples=40, deadline=None)
 def test_random_targets_have_an_answer(count: int, seed: int, size: float) -> None:
     rng = np.random.default_rng(seed)
-    found = er.ReachQuery(er.Robot.load(RX60B), turns=2).evaluate(rng.normal(size=(count, 6)) * size + 1e-9)
+    found = reach_of_two_turns().evaluate(rng.normal(size=(count, 6)) * size + 1e-9)
     assert found.free.shape == (count,) and (found.free <= found.solutions).all()
