@@ -14,7 +14,7 @@ use elbowroom_scene::Attachment;
 use elbowroom_spatial::Pose;
 use sha2::{Digest, Sha256};
 
-use crate::{Cell, CellRegionId, CellRobot, Follow, Frames};
+use crate::{Cell, CellRegionId, CellRobot, Follow, Frames, seal};
 
 /// Ticks without an answer after which a controller stops by itself.
 const MISSED_ANSWERS: f64 = 2.0;
@@ -119,6 +119,11 @@ pub(crate) fn checksum(cell: &Cell) -> Result<String, Diagnostic> {
     for setup in setups(cell)? {
         hash.update(setup.configuration.checksum());
         hash.update("\n");
+        // Of measured sources each node computes the place from messages, so all must agree about direction and rest.
+        let is_measured = |follow: &&Follow| Frames::new(cell).measured_source(follow).is_some();
+        for follow in setup.sources.iter().filter(is_measured) {
+            hash.update(seal::source_checksum(cell, *follow, &SourceLimits::default()));
+        }
     }
     Ok(hash.finalize().iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
@@ -203,12 +208,10 @@ fn setup(
     })
 }
 
-/// The name is part of the checksum: processes of a live cell agree about what is measured.
 fn source_name(cell: &Cell, follow: &Follow) -> String {
-    let measured = if Frames::new(cell).measured_source(follow).is_some() { "measured " } else { "" };
     match follow {
-        Follow::Encoder(i) => format!("{measured}encoder {}", cell.frame_sources.encoders[*i].name),
-        Follow::Object(i) => format!("{measured}object {}", cell.objects[i.0].name),
+        Follow::Encoder(i) => format!("encoder {}", cell.frame_sources.encoders[*i].name),
+        Follow::Object(i) => format!("object {}", cell.objects[i.0].name),
         Follow::Poses(i) => {
             let file = cell.frame_sources.pose_tracks[*i].file.file_name();
             format!("poses {}", file.map_or_else(String::new, |name| name.to_string_lossy().into_owned()))

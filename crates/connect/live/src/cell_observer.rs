@@ -10,7 +10,6 @@ use elbowroom_interlock::Micros;
 use elbowroom_monitor::SourceState;
 use elbowroom_recording::Recorder;
 use elbowroom_robot::ObjectId;
-use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::{CellStatus, EventStatus, HealthStatus, PlacedStatus, RobotStatus, ServiceStatus, SlotStatus};
 use elbowroom_view::StatusFeed;
 
@@ -19,6 +18,7 @@ use crate::keys::Keys;
 use crate::locked::locked;
 use crate::measured_sources::MeasuredSources;
 use crate::network::{Network, NetworkError, Subscription};
+use crate::node::LOST;
 use crate::ros2::CellFeed;
 
 /// Interval between statuses of the cell: the page shows 30 pictures per second.
@@ -142,8 +142,7 @@ fn aged(status: &RobotStatus, age_s: f64) -> RobotStatus {
 /// The objects that move by themselves, where they are now. A measured object that is not heard is left out.
 fn placed_objects(cell: &Cell, measured: &MeasuredSources, clock: Clock) -> Vec<PlacedStatus> {
     let heard = measured.states();
-    let unknown = SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: 0.0 };
-    let states: Vec<SourceState> = heard.iter().map(|state| state.unwrap_or(unknown)).collect();
+    let states: Vec<SourceState> = heard.iter().map(|state| state.unwrap_or(LOST)).collect();
     let frames = Frames::with_measured(cell, &states);
     let placed = |object: ObjectId| {
         let follow = Follow::Object(object);

@@ -7,8 +7,9 @@ use elbowroom_cell::configure;
 use elbowroom_interlock::{Boot, Micros};
 use elbowroom_live::node::{NodeMonitor, NodeTick};
 use elbowroom_live::{ControllerClient, ControllerState, configuration_number};
-use elbowroom_monitor::RobotSlot;
+use elbowroom_monitor::{Fault, OverrideReason, RobotSlot};
 use elbowroom_robot::RobotId;
+use elbowroom_testkit::random::SplitMix;
 
 const TICK_S: f64 = 0.004;
 /// Number of ticks until the answer that counts: too few for unchanged values to be doubted.
@@ -225,5 +226,89 @@ fn a_source_that_is_not_heard_or_says_nothing_sensible_stops_the_robot() {
         // 100 ms later the last place is stale.
         let silent: Vec<f64> = (24..60).map(|n| tick(n, None)).collect();
         assert!(silent[..20].iter().any(|o| *o > 0.0) && silent[27..].iter().all(|o| *o == 0.0), "{silent:?}");
+    }
+}
+
+/// The controller's messages arrive at its node with random delays of up to 0.3 ms, those of the carrier in every `every`th
+/// tick.
+fn faults_of_the_source(carrier: Carrier, every: u64, seed: u64) -> Vec<String> {
+    let cell = Arc::new(two_rails(&carrier.tables()));
+    let checksum = configuration_number(&cell);
+    let setup = configure::setups(&cell).expect("setups").remove(0);
+    let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
+    let mut node = NodeTick::new(cell, setup, monitor, checksum, None);
+    let (mut left, mut right) = (ControllerClient::new(1, checksum), ControllerClient::new(1, checksum));
+    let (mut random, mut faults) = (SplitMix(seed), Vec::new());
+    for n in 0..1000 {
+        let now = Micros(1 + 4000 * n);
+        if n % every == 0 {
+            let late = now + Micros(random.below(300) as u64);
+            carrier.hear(&node, &carrier.message(&mut right, now, 1.9 - SPEED * 0.001 * n as f64, true), late);
+        }
+        let state = ControllerState {
+            q: &[0.1],
+            qd: &[0.0],
+            intent: &[0.0],
+            programmed_override: 1.0,
+            ..ControllerState::default()
+        };
+        let arrived = now + Micros(300 + random.below(300) as u64);
+        node.joint_state(left.joint_state(now, &state), arrived);
+        let report = node.tick(arrived).expect("a report");
+        if n > 20 && matches!(report.reason, OverrideReason::Fault(Fault::Source { .. } | Fault::SourceJump { .. })) {
+            faults.push(format!("{carrier:?}, tick {n}: {:?}", report.reason));
+        }
+    }
+    faults
+}
+
+/// The override beside a region on a belt that wraps at half a metre, whose encoder sends no velocity every `every` ticks.
+fn override_beside_a_wrapping_belt(every: u64) -> f64 {
+    let cell = Arc::new(two_rails(&Carrier::Encoder.tables().replace("speed = 0", "speed = 0\nwrap = 400")));
+    let checksum = configuration_number(&cell);
+    let setup = configure::setups(&cell).expect("setups").remove(0);
+    let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
+    let mut node = NodeTick::new(cell, setup, monitor, checksum, None);
+    let (mut left, mut sender) = (ControllerClient::new(1, checksum), ControllerClient::new(1, 0));
+    let mut highest = 0.0_f64;
+    for n in 0..120 {
+        let now = Micros(1 + 4000 * n);
+        if n % every == 0 {
+            // A belt that is so fast that it wraps between two messages at the longer of the two periods.
+            let travel_m = (6.0 * 0.004 * n as f64).rem_euclid(0.4);
+            let state = ControllerState { q: &[travel_m], programmed_override: 1.0, ..ControllerState::default() };
+            node.measured(0, sender.joint_state(now, &state), now);
+        }
+        let state = ControllerState {
+            q: &[1.9],
+            qd: &[0.0],
+            intent: &[0.0],
+            programmed_override: 1.0,
+            ..ControllerState::default()
+        };
+        node.joint_state(left.joint_state(now, &state), now);
+        node.tick(now);
+        let (answer, mut bytes) = (node.take_answer().expect("an answer"), Vec::new());
+        answer.encode(&mut bytes);
+        left.receive(&bytes).expect("an answer to this controller");
+        highest = highest.max(if n > 20 { answer.speed_override } else { 0.0 });
+    }
+    highest
+}
+
+#[test]
+fn which_way_a_belt_went_is_not_guessed() {
+    assert!(override_beside_a_wrapping_belt(2) > 0.0);
+    // In 24 ms it goes 144 mm: it may have gone 256 mm back.
+    assert_eq!(override_beside_a_wrapping_belt(6), 0.0);
+}
+
+#[test]
+fn a_tick_without_news_of_the_carrier_is_no_fault() {
+    for carrier in [Carrier::Robot, Carrier::Encoder, Carrier::Object, Carrier::OnBelt] {
+        for every in [1, 2, 3, 7] {
+            let faults = faults_of_the_source(carrier, every, every);
+            assert!(faults.is_empty(), "every {every}: {} faults, {}", faults.len(), faults[0]);
+        }
     }
 }

@@ -26,6 +26,7 @@ use elbowroom_monitor::AccessClass;
 pub use edit::{CellEdit, Signer, edit, seal};
 pub use last_seal::Seal;
 pub use log::log_of;
+pub(crate) use source::source_checksum;
 
 use crate::{Cell, CellFile};
 use log::Log;

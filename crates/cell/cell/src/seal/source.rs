@@ -48,7 +48,7 @@ impl<'a> SealedSource<'a> {
                 ("poses".to_owned(), None, [poses, None])
             }
         };
-        let checksum = checksum(cell, follow, &region.source_limits);
+        let checksum = source_checksum(cell, follow, &region.source_limits);
         Some(Self { name, object, files: files.into_iter().flatten().collect(), checksum })
     }
 
@@ -77,7 +77,7 @@ fn moving_object(cell: &Cell, object: ObjectId) -> Option<&MovingObject> {
 /// Checksum of the source as it was read, not of the text of its files.
 ///
 /// Every variant and every field is named, so that a new one cannot be forgotten.
-fn checksum(cell: &Cell, follow: Follow, limits: &SourceLimits) -> String {
+pub(crate) fn source_checksum(cell: &Cell, follow: Follow, limits: &SourceLimits) -> String {
     let mut hash = Sha256::new();
     // -0 and 0 have the same checksum.
     let mut number = |v: f64| hash.update((v + 0.0).to_bits().to_le_bytes());

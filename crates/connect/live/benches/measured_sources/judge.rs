@@ -24,7 +24,7 @@ pub struct Seen {
     pub entries: u64,
     /// Times at which the region came to the robot at rest.
     pub reached_at_rest: u64,
-    /// Times at which it stopped because the source was lost.
+    /// Statuses after which it stopped because the source was lost, or had jumped.
     pub losses: u64,
     /// Least distance at which it moved towards the region, m.
     pub nearest_m: f64,
@@ -53,7 +53,7 @@ impl Seen {
     }
 
     fn status(&mut self, status: &RobotStatus) {
-        let is_lost = status.reason.contains("is lost");
+        let is_lost = ["is lost", "jumped"].iter().any(|why| status.reason.contains(why));
         self.losses += u64::from(is_lost && !self.is_lost);
         self.is_lost = is_lost;
     }

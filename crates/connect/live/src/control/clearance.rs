@@ -6,10 +6,9 @@ use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Life, Monitor, RegionKind, SourceState};
 use elbowroom_robot::RobotId;
-use elbowroom_spatial::{FrameMotion, Pose};
 
 use crate::messages::JointState;
-use crate::node::AttachedVolumes;
+use crate::node::{AttachedVolumes, LOST};
 
 /// Where the robots and the measured sources of a cell are; `None` for those that are not heard.
 pub(crate) struct HeardPlaces {
@@ -101,13 +100,16 @@ impl ClearanceQuery {
 }
 
 impl RobotMonitor {
-    /// Distance of the robot with what it carries from the only region, and the way of its points until it stops, m.
+    /// Distance of the robot with what it carries from the only region, and the way of its points until it stops and of the
+    /// region until it counts, m.
     fn distance(&mut self, cell: &Cell, state: &JointState, sources: &[SourceState]) -> Option<(f64, f64)> {
         let are_attached = self.attached.apply(&state.attached, &mut self.monitor, |_, _| {});
         let mut query = self.monitor.region_distance(sources);
         query.set_q(&state.q);
         let nearest = query.distances(f64::INFINITY).map(|(_, metres)| metres).next();
-        let stopping_m = query.motion_bound(&state.q, &at_standstill(cell, self.robot, state));
+        let going_on_s = UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s;
+        let of_region: f64 = sources.iter().map(|source| source.motion.velocity.length() * going_on_s).sum();
+        let stopping_m = query.motion_bound(&state.q, &at_standstill(cell, self.robot, state)) + of_region;
         nearest.filter(|_| are_attached).map(|metres| (metres, stopping_m))
     }
 }
@@ -151,8 +153,7 @@ fn sources(
     measured: &[Option<SourceState>],
     t_s: f64,
 ) -> Option<Vec<SourceState>> {
-    let at_rest = SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: t_s };
-    let states: Vec<SourceState> = measured.iter().map(|state| state.unwrap_or(at_rest)).collect();
+    let states: Vec<SourceState> = measured.iter().map(|state| state.unwrap_or(LOST)).collect();
     let frames = Frames::with_measured(cell, &states);
     let is_known = |f: &Follow| match (f, frames.measured_source(f)) {
         (Follow::Robot { robot, .. }, _) => chains[robot.0].is_some(),

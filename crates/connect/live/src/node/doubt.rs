@@ -21,11 +21,19 @@ pub(super) enum Doubt {
     /// The last message of the controller was rejected.
     #[error("the last message was refused, as {0}")]
     Refused(Rejected),
+    /// The last message of a measured source was rejected, and the source is lost.
+    #[error("the last message of a measured encoder or object was refused, as {0}")]
+    SourceRefused(Rejected),
+    /// The last message of a measured source has numbers that say no place.
+    #[error(
+        "the last message of a measured encoder or object says no place: an encoder needs 1 position, an object 7 or 13"
+    )]
+    SourceUnclear,
 }
 
 impl Doubt {
     /// Whether it is unknown which regions the robot must not enter.
     pub(super) fn is_of_regions(self) -> bool {
-        !matches!(self, Self::Refused(_))
+        matches!(self, Self::OtherCell | Self::NoTable | Self::NotBuilt)
     }
 }

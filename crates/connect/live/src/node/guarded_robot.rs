@@ -10,14 +10,13 @@ use elbowroom_monitor::{
     AccessClass, Fault, Interlock, Monitor, OverrideReason, RegionId, Snapshot, SourceState, TickReport,
 };
 use elbowroom_recording::TickRecorder;
-use elbowroom_spatial::{FrameMotion, Pose};
 use elbowroom_status::StatusSample;
 
 use super::attached_volumes::AttachedVolumes;
 use super::doubt::Doubt;
 use super::followed_robot::FollowedRobot;
-use super::inbox::Contents;
-use super::measured_frame::MeasuredFrame;
+use super::inbox::{Contents, Heard};
+use super::measured_frame::{LOST, MeasuredFrame};
 use super::next_configuration::{NextConfiguration, NodeVersion};
 use super::node_monitor::NodeMonitor;
 use super::standstill::Standstill;
@@ -72,8 +71,8 @@ struct Carriers {
     measured_states: Vec<SourceState>,
 }
 
-/// State of a source that is not known.
-const LOST: SourceState = SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: f64::NEG_INFINITY };
+/// Disagreement of two clocks after a second of silence, s.
+const DRIFT_S: f64 = 1e-3;
 
 impl GuardedRobot {
     pub(super) fn new(
@@ -154,8 +153,21 @@ impl GuardedRobot {
             () if may_have_changed => Some(Doubt::NoTable),
             () if !table.permits(&inbox.number) => Some(Doubt::NotBuilt),
             // A late message is refused now and then; that matters only if no other one arrives.
-            () => inbox.own.refused.filter(|_| self.is_stale()).map(Doubt::Refused),
+            () if self.is_stale() => inbox.own.refused.map(Doubt::Refused),
+            () => self.doubt_of_sources(inbox),
         };
+    }
+
+    /// Why a measured source is lost, if its sender is heard.
+    fn doubt_of_sources(&self, inbox: &Contents) -> Option<Doubt> {
+        let stale = Micros::from_seconds(self.cell.monitoring.laws.stale_s);
+        let is_lost = |frame: &MeasuredFrame| frame.age.is_none_or(|age| age > stale);
+        let mut lost = self.carriers.measured.iter().zip(&inbox.measured).filter(|(frame, _)| is_lost(frame));
+        let doubt = |(frame, heard): (&MeasuredFrame, &Heard)| {
+            let unclear = frame.is_unclear.then_some(Doubt::SourceUnclear);
+            heard.refused.map(Doubt::SourceRefused).or(unclear)
+        };
+        lost.find_map(doubt)
     }
 
     /// Continues with other regions. Nothing is allocated or freed: `next` then holds the former parts.
@@ -316,20 +328,30 @@ impl GuardedRobot {
         measured_states.clear();
         measured_states.extend(measured.iter().map(|frame| frame.state(cell).unwrap_or(LOST)));
         let frames = Frames::with_measured(cell, measured_states);
-        sources.clear();
-        for follow in &setup.sources {
+        for (index, follow) in setup.sources.iter().enumerate() {
             // Stamps are on the clock of this robot's controller, like those of its joint values.
             let age = match (follow, frames.measured_source(follow)) {
                 (Follow::Robot { robot, .. }, _) => followed[robot.0].age,
                 (_, Some(source)) => measured[source].age,
                 (_, None) => Some(Micros(0)),
             };
-            sources.push(age.map_or(LOST, |age| SourceState {
+            let state = age.map_or(LOST, |age| SourceState {
                 stamp_s: seconds(self.own.now) - seconds(age),
                 ..frames.source(follow, chains, seconds(now))
-            }));
+            });
+            match sources.get_mut(index) {
+                Some(before) => *before = not_set_back(before, state),
+                None => sources.push(state),
+            }
         }
     }
+}
+
+/// The later of two states, if the clocks of sender and controller disagree by as little as they may drift apart:
+/// otherwise a tick without news would find the source at a time before that of the last tick, which is a fault.
+fn not_set_back(before: &SourceState, next: SourceState) -> SourceState {
+    let is_set_back = next.stamp_s < before.stamp_s && before.stamp_s - next.stamp_s <= DRIFT_S;
+    if is_set_back { *before } else { next }
 }
 
 fn seconds(time: Micros) -> f64 {

@@ -142,7 +142,8 @@ impl Inbox {
         let contents = Contents {
             own: Heard::new(checksum, cell),
             followed: followed.into_iter().map(|is| is.then(|| Heard::new(checksum, cell))).collect(),
-            measured: vec![Heard::of_source(checksum); cell.frame_sources.measured.len()],
+            // Not cloned: clones have no memory for messages yet.
+            measured: cell.frame_sources.measured.iter().map(|_| Heard::of_source(checksum)).collect(),
             grants: Vec::with_capacity(MAX_BYTES),
             has_grants: false,
             regions: RegionTable::initial(cell),

@@ -9,6 +9,13 @@ use super::followed_robot::SAME_MOTION;
 use super::inbox::Heard;
 use crate::messages::JointState;
 
+/// Speed (m/s) that no belt exceeds: the default limit of what regions follow.
+const FASTEST_M_S: f64 = 10.0;
+
+/// State of a source that is not known: it is stale in every tick.
+pub(crate) const LOST: SourceState =
+    SourceState { pose: Pose::IDENTITY, motion: FrameMotion::REST, stamp_s: f64::NEG_INFINITY };
+
 /// Place and velocity of a measured source, from its messages: joint states of one position, or of the numbers of a pose.
 #[derive(Debug, Clone)]
 pub(crate) struct MeasuredFrame {
@@ -17,6 +24,8 @@ pub(crate) struct MeasuredFrame {
     last: Option<(Micros, Place)>,
     /// Its velocity; `None` if it is unknown. A source of unknown velocity does not count as at rest.
     velocity: Option<Velocity>,
+    /// Whether the numbers of the last message say no place.
+    pub(crate) is_unclear: bool,
     /// Age of the place; `None` if place or velocity are unknown.
     pub(crate) age: Option<Micros>,
 }
@@ -39,7 +48,7 @@ enum Velocity {
 
 impl MeasuredFrame {
     pub(crate) fn new(source: MeasuredSource) -> Self {
-        Self { source, last: None, velocity: None, age: None }
+        Self { source, last: None, velocity: None, is_unclear: false, age: None }
     }
 
     /// The measured sources of a cell, in their order.
@@ -70,6 +79,7 @@ impl MeasuredFrame {
 
     fn follow(&mut self, heard: &Heard, cell: &Cell) {
         let read = heard.stamp.zip(self.read(&heard.state));
+        self.is_unclear = read.is_none();
         let Some((stamp, (place, velocity))) = read else {
             (self.last, self.velocity) = (None, None);
             return;
@@ -115,10 +125,13 @@ impl MeasuredFrame {
         match (self.source, before, now) {
             (MeasuredSource::Encoder(e), Place::Travel(before), Place::Travel(now)) => {
                 let travelled = now - before;
-                // An encoder that wraps itself has not gone all the way back.
-                let wrap = cell.frame_sources.encoders[e].wrap_m;
-                let rounds = wrap.map_or(0.0, |wrap| (travelled / wrap).round() * wrap);
-                Some(Velocity::Speed((travelled - rounds) * rate))
+                let Some(wrap) = cell.frame_sources.encoders[e].wrap_m else {
+                    return Some(Velocity::Speed(travelled * rate));
+                };
+                // An encoder that wraps itself has not gone all the way back. Which way it went is known only if it cannot
+                // have gone half the way round.
+                let rounds = (travelled / wrap).round() * wrap;
+                (2.0 * FASTEST_M_S < wrap * rate).then_some(Velocity::Speed((travelled - rounds) * rate))
             }
             (MeasuredSource::Object(_), Place::Pose(before), Place::Pose(now)) => {
                 let turned = now.rotation * before.rotation.inverse();

@@ -47,7 +47,7 @@ use outbox::Outbox;
 pub(crate) use attached_volumes::AttachedVolumes;
 pub(crate) use inbox::Heard;
 pub use input_gate::{InputGate, Rejected};
-pub(crate) use measured_frame::MeasuredFrame;
+pub(crate) use measured_frame::{LOST, MeasuredFrame};
 pub use node_monitor::NodeMonitor;
 pub use node_tick::NodeTick;
 pub use region_builder::{RegionBuilder, RegionsError};
