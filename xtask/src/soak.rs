@@ -104,6 +104,12 @@ const RUNS: [Run; 16] = [
         env: &[],
     },
     Run {
+        name: "measured",
+        what: "robots beside a measured encoder and object whose messages are late, lost and out of order, for half an hour",
+        words: &["bench", "-p", "elbowroom-live", "--bench", "measured_sources", "--", "--seconds", "1800"],
+        env: &[],
+    },
+    Run {
         name: "cells",
         what: "10,000 random cells of each kind under an independent oracle",
         words: &["xtask", "fuzz", "cells", "--count", "10000"],
