@@ -139,9 +139,10 @@ fn aged(status: &RobotStatus, age_s: f64) -> RobotStatus {
     status
 }
 
-/// The objects that move by themselves, where they are now. A measured object that is not heard is left out.
+/// The objects that move by themselves, where they are now, or where they were heard last. Those that were never heard are
+/// left out.
 fn placed_objects(cell: &Cell, measured: &MeasuredSources, clock: Clock) -> Vec<PlacedStatus> {
-    let heard = measured.states();
+    let heard = measured.last_states();
     let states: Vec<SourceState> = heard.iter().map(|state| state.unwrap_or(LOST)).collect();
     let frames = Frames::with_measured(cell, &states);
     let placed = |object: ObjectId| {

@@ -55,10 +55,19 @@ impl MeasuredSources {
 
     /// State per measured source; `None` if it is not heard.
     pub(crate) fn states(&self) -> Vec<Option<SourceState>> {
+        self.states_within(TOO_OLD)
+    }
+
+    /// The last state per measured source, however old it is; `None` if it was never heard.
+    pub(crate) fn last_states(&self) -> Vec<Option<SourceState>> {
+        self.states_within(Micros(u64::MAX))
+    }
+
+    fn states_within(&self, oldest: Micros) -> Vec<Option<SourceState>> {
         let now = self.clock.micros();
         let fresh = |(heard, frame): &mut (Heard, MeasuredFrame)| {
             frame.take(heard, &self.cell, now);
-            frame.state(&self.cell).filter(|_| frame.age.is_some_and(|age| age <= TOO_OLD))
+            frame.state(&self.cell).filter(|_| frame.age.is_some_and(|age| age <= oldest))
         };
         locked(&self.heard).iter_mut().map(fresh).collect()
     }
