@@ -260,6 +260,36 @@ follow = { robot = "other", frame = "flange" }
     }
 
     #[test]
+    fn a_region_on_a_belt_is_where_the_belt_was_heard() {
+        let belt = r#"
+[encoder.belt]
+direction = [0, 0, 1]
+speed = 0
+measured = true
+[region.on_belt]
+shape = "sphere"
+centre = [0, 0, 500]
+radius = 200
+warning = 100
+robots = ["rail"]
+follow = { encoder = "belt" }
+"#;
+        let cell = Cell::parse("rails.toml", &format!("{CELL}{belt}")).unwrap_or_else(|e| panic!("{e}"));
+        let region = cell.regions.iter().find(|r| r.region.name == "on_belt").unwrap();
+        let clearance = |travel_m: Option<f64>| {
+            let (pose, motion) = cell.frame_sources.encoders[0].displacement(travel_m.unwrap_or(0.0), 0.3);
+            let measured = vec![travel_m.map(|_| SourceState { pose, motion, stamp_s: 0.0 })];
+            let places = HeardPlaces { joints: vec![Some(at(0.5)), None], measured };
+            clearances(&cell, region, &places, 0.0).unwrap()[0]
+        };
+        assert_eq!(clearance(None).distance_m, None);
+        let far = clearance(Some(1.0));
+        // The centres are 1 m apart, the radii are 0.2 and 0.05 m. The belt goes on until the region counts.
+        assert!(far.distance_m.is_some_and(|d| (d - 0.75).abs() < 1e-6), "{far:?}");
+        assert!((far.stopping_m - 0.3 * (UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s)).abs() < 1e-9, "{far:?}");
+    }
+
+    #[test]
     fn a_robot_that_moves_needs_room_to_stop() {
         let cell = Cell::parse("rails.toml", CELL).unwrap_or_else(|e| panic!("{e}"));
         let moving = |qd: Vec<f64>| {
