@@ -29,6 +29,9 @@ impl<'a> Frames<'a> {
     /// Index of the measured source that a followed frame moves with; `None` if it moves as the cell file says.
     pub fn measured_source(&self, follow: &Follow) -> Option<usize> {
         let FrameSources { encoders, measured, .. } = &self.cell.frame_sources;
+        if measured.is_empty() {
+            return None;
+        }
         let index = |source: MeasuredSource| measured.iter().position(|m| *m == source);
         match follow {
             Follow::Encoder(e) => index(MeasuredSource::Encoder(*e)),

@@ -7,7 +7,7 @@ use elbowroom_cell::configure;
 use elbowroom_interlock::{Boot, Micros};
 use elbowroom_live::node::{NodeMonitor, NodeTick};
 use elbowroom_live::{ControllerClient, ControllerState, configuration_number};
-use elbowroom_monitor::{Fault, OverrideReason, RobotSlot};
+use elbowroom_monitor::{Fault, OverrideReason, RobotSlot, TickReport};
 use elbowroom_robot::RobotId;
 use elbowroom_testkit::random::SplitMix;
 
@@ -89,15 +89,46 @@ follow = {follow}
     }
 }
 
+/// The left robot's node and controller.
+struct Left {
+    checksum: u64,
+    node: NodeTick,
+    client: ControllerClient,
+}
+
+impl Left {
+    fn new(tables: &str) -> Self {
+        let cell = Arc::new(two_rails(tables));
+        let checksum = configuration_number(&cell);
+        let setup = configure::setups(&cell).expect("setups").remove(0);
+        let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
+        let node = NodeTick::new(cell, setup, monitor, checksum, None);
+        Self { checksum, node, client: ControllerClient::new(1, checksum) }
+    }
+
+    /// Sends a joint state of a robot at rest whose program wants this velocity, and hears the answer.
+    fn tick(&mut self, sent: Micros, arrived: Micros, q: f64, program: f64) -> TickReport {
+        let state = ControllerState {
+            q: &[q],
+            qd: &[0.0],
+            intent: &[program],
+            programmed_override: 1.0,
+            ..ControllerState::default()
+        };
+        self.node.joint_state(self.client.joint_state(sent, &state), arrived);
+        let report = self.node.tick(arrived).expect("a report");
+        let mut bytes = Vec::new();
+        self.node.take_answer().expect("an answer").encode(&mut bytes);
+        self.client.receive(&bytes).expect("an answer to this controller");
+        report
+    }
+}
+
 /// Returns the override of the left robot, which is at 0.5 m, while the region on the carrier approaches from above
 /// with a true distance of `gap_m`. The received values are `delay` ticks old, except at the beginning.
 fn override_at(carrier: Carrier, gap_m: f64, delay: usize, with_velocities: bool, program: f64) -> f64 {
-    let cell = Arc::new(two_rails(&carrier.tables()));
-    let checksum = configuration_number(&cell);
-    let setup = configure::setups(&cell).expect("setups").remove(0);
-    let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
-    let mut node = NodeTick::new(cell, setup, monitor, checksum, None);
-    let (mut left, mut right) = (ControllerClient::new(1, checksum), ControllerClient::new(1, checksum));
+    let mut left = Left::new(&carrier.tables());
+    let mut right = ControllerClient::new(1, left.checksum);
     let time = |tick: usize| Micros(1 + (tick as f64 * TICK_S * 1e6) as u64);
     let mut messages = Vec::new();
     let mut answer = 0.0;
@@ -108,23 +139,9 @@ fn override_at(carrier: Carrier, gap_m: f64, delay: usize, with_velocities: bool
         // The first messages show how long messages take.
         let heard = if tick < 3 { Some(tick) } else { tick.checked_sub(delay).filter(|heard| *heard >= 3) };
         if let Some(heard) = heard {
-            carrier.hear(&node, &messages[heard], time(tick));
+            carrier.hear(&left.node, &messages[heard], time(tick));
         }
-        let state = ControllerState {
-            q: &[0.5],
-            qd: &[0.0],
-            intent: &[program],
-            programmed_override: 1.0,
-            ..ControllerState::default()
-        };
-        node.joint_state(left.joint_state(time(tick), &state), time(tick));
-        node.tick(time(tick));
-        if let Some(given) = node.take_answer() {
-            let mut bytes = Vec::new();
-            given.encode(&mut bytes);
-            left.receive(&bytes).expect("an answer to this controller");
-            answer = given.speed_override;
-        }
+        answer = left.tick(time(tick), time(tick), 0.5, program).speed_override;
     }
     answer
 }
@@ -191,31 +208,15 @@ fn a_source_that_is_not_heard_or_says_nothing_sensible_stops_the_robot() {
         (Carrier::Object, &[1.7]),
     ];
     for (carrier, q) in bad {
-        let cell = Arc::new(two_rails(&carrier.tables()));
-        let checksum = configuration_number(&cell);
-        let setup = configure::setups(&cell).expect("setups").remove(0);
-        let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
-        let mut node = NodeTick::new(cell, setup, monitor, checksum, None);
-        let (mut left, mut sender) = (ControllerClient::new(1, checksum), ControllerClient::new(1, 0));
+        let mut left = Left::new(&carrier.tables());
+        let mut sender = ControllerClient::new(1, 0);
         let mut tick = |n: u64, message: Option<&[f64]>| {
             let now = Micros(1 + 4000 * n);
             if let Some(q) = message {
                 let state = ControllerState { q, programmed_override: 1.0, ..ControllerState::default() };
-                carrier.hear(&node, sender.joint_state(now, &state), now);
+                carrier.hear(&left.node, sender.joint_state(now, &state), now);
             }
-            let state = ControllerState {
-                q: &[0.5],
-                qd: &[0.0],
-                intent: &[0.0],
-                programmed_override: 1.0,
-                ..ControllerState::default()
-            };
-            node.joint_state(left.joint_state(now, &state), now);
-            node.tick(now);
-            let (answer, mut bytes) = (node.take_answer().expect("an answer"), Vec::new());
-            answer.encode(&mut bytes);
-            left.receive(&bytes).expect("an answer to this controller");
-            answer.speed_override
+            left.tick(now, now, 0.5, 0.0).speed_override
         };
         assert_eq!(tick(0, None), 0.0, "nothing was heard");
         let good = if carrier == Carrier::Encoder { &pose[2..3] } else { &pose[..] };
@@ -232,29 +233,16 @@ fn a_source_that_is_not_heard_or_says_nothing_sensible_stops_the_robot() {
 /// The controller's messages arrive at its node with random delays of up to 0.3 ms, those of the carrier in every `every`th
 /// tick.
 fn faults_of_the_source(carrier: Carrier, every: u64, seed: u64) -> Vec<String> {
-    let cell = Arc::new(two_rails(&carrier.tables()));
-    let checksum = configuration_number(&cell);
-    let setup = configure::setups(&cell).expect("setups").remove(0);
-    let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
-    let mut node = NodeTick::new(cell, setup, monitor, checksum, None);
-    let (mut left, mut right) = (ControllerClient::new(1, checksum), ControllerClient::new(1, checksum));
+    let mut left = Left::new(&carrier.tables());
+    let mut right = ControllerClient::new(1, left.checksum);
     let (mut random, mut faults) = (SplitMix(seed), Vec::new());
     for n in 0..1000 {
         let now = Micros(1 + 4000 * n);
         if n % every == 0 {
             let late = now + Micros(random.below(300) as u64);
-            carrier.hear(&node, &carrier.message(&mut right, now, 1.9 - SPEED * 0.001 * n as f64, true), late);
+            carrier.hear(&left.node, &carrier.message(&mut right, now, 1.9 - SPEED * 0.001 * n as f64, true), late);
         }
-        let state = ControllerState {
-            q: &[0.1],
-            qd: &[0.0],
-            intent: &[0.0],
-            programmed_override: 1.0,
-            ..ControllerState::default()
-        };
-        let arrived = now + Micros(300 + random.below(300) as u64);
-        node.joint_state(left.joint_state(now, &state), arrived);
-        let report = node.tick(arrived).expect("a report");
+        let report = left.tick(now, now + Micros(300 + random.below(300) as u64), 0.1, 0.0);
         if n > 20 && matches!(report.reason, OverrideReason::Fault(Fault::Source { .. } | Fault::SourceJump { .. })) {
             faults.push(format!("{carrier:?}, tick {n}: {:?}", report.reason));
         }
@@ -262,36 +250,21 @@ fn faults_of_the_source(carrier: Carrier, every: u64, seed: u64) -> Vec<String> 
     faults
 }
 
-/// The override beside a region on a belt that wraps at half a metre, whose encoder sends no velocity every `every` ticks.
+/// The highest override beside a region on a belt at 6 m/s that wraps at 0.4 m, whose encoder sends its travel alone, in every
+/// `every`th tick.
 fn override_beside_a_wrapping_belt(every: u64) -> f64 {
-    let cell = Arc::new(two_rails(&Carrier::Encoder.tables().replace("speed = 0", "speed = 0\nwrap = 400")));
-    let checksum = configuration_number(&cell);
-    let setup = configure::setups(&cell).expect("setups").remove(0);
-    let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
-    let mut node = NodeTick::new(cell, setup, monitor, checksum, None);
-    let (mut left, mut sender) = (ControllerClient::new(1, checksum), ControllerClient::new(1, 0));
+    let mut left = Left::new(&Carrier::Encoder.tables().replace("speed = 0", "speed = 0\nwrap = 400"));
+    let mut sender = ControllerClient::new(1, 0);
     let mut highest = 0.0_f64;
     for n in 0..120 {
         let now = Micros(1 + 4000 * n);
         if n % every == 0 {
-            // A belt that is so fast that it wraps between two messages at the longer of the two periods.
             let travel_m = (6.0 * 0.004 * n as f64).rem_euclid(0.4);
             let state = ControllerState { q: &[travel_m], programmed_override: 1.0, ..ControllerState::default() };
-            node.measured(0, sender.joint_state(now, &state), now);
+            left.node.measured(0, sender.joint_state(now, &state), now);
         }
-        let state = ControllerState {
-            q: &[1.9],
-            qd: &[0.0],
-            intent: &[0.0],
-            programmed_override: 1.0,
-            ..ControllerState::default()
-        };
-        node.joint_state(left.joint_state(now, &state), now);
-        node.tick(now);
-        let (answer, mut bytes) = (node.take_answer().expect("an answer"), Vec::new());
-        answer.encode(&mut bytes);
-        left.receive(&bytes).expect("an answer to this controller");
-        highest = highest.max(if n > 20 { answer.speed_override } else { 0.0 });
+        let report = left.tick(now, now, 1.9, 0.0);
+        highest = highest.max(if n > 20 { report.speed_override } else { 0.0 });
     }
     highest
 }

@@ -40,7 +40,7 @@ impl Encoder {
         (self.wrap_m.map_or(travel, |wrap| travel.rem_euclid(wrap)), speed)
     }
 
-    /// Displacement and velocity of what the belt carries, after a travel (m) that has not wrapped yet, at a speed (m/s).
+    /// Displacement and velocity of what the belt carries, after a travel (m), wrapped or not, at a speed (m/s).
     pub fn displacement(&self, travel_m: f64, speed: f64) -> (Pose, FrameMotion) {
         let travel_m = self.wrap_m.map_or(travel_m, |wrap| travel_m.rem_euclid(wrap));
         let motion = FrameMotion { velocity: self.direction * speed, ..FrameMotion::REST };

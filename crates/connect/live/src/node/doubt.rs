@@ -29,6 +29,11 @@ pub(super) enum Doubt {
         "the last message of a measured encoder or object says no place: an encoder needs 1 position, an object 7 or 13"
     )]
     SourceUnclear,
+    /// The velocity of a measured source is not known.
+    #[error(
+        "the velocity of a measured encoder or object is not known: send it, or more messages (docs/live.md says how many)"
+    )]
+    SourceVelocity,
 }
 
 impl Doubt {

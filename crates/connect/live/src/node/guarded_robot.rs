@@ -15,7 +15,7 @@ use elbowroom_status::StatusSample;
 use super::attached_volumes::AttachedVolumes;
 use super::doubt::Doubt;
 use super::followed_robot::FollowedRobot;
-use super::inbox::{Contents, Heard};
+use super::inbox::Contents;
 use super::measured_frame::{LOST, MeasuredFrame};
 use super::next_configuration::{NextConfiguration, NodeVersion};
 use super::node_monitor::NodeMonitor;
@@ -158,16 +158,15 @@ impl GuardedRobot {
         };
     }
 
-    /// Why a measured source is lost, if its sender is heard.
+    /// Why a measured source that a region follows is lost, if its sender is heard.
     fn doubt_of_sources(&self, inbox: &Contents) -> Option<Doubt> {
-        let stale = Micros::from_seconds(self.cell.monitoring.laws.stale_s);
-        let is_lost = |frame: &MeasuredFrame| frame.age.is_none_or(|age| age > stale);
-        let mut lost = self.carriers.measured.iter().zip(&inbox.measured).filter(|(frame, _)| is_lost(frame));
-        let doubt = |(frame, heard): (&MeasuredFrame, &Heard)| {
-            let unclear = frame.is_unclear.then_some(Doubt::SourceUnclear);
-            heard.refused.map(Doubt::SourceRefused).or(unclear)
+        let (frames, stale) = (Frames::new(&self.cell), Micros::from_seconds(self.cell.monitoring.laws.stale_s));
+        let doubt = |source: usize| {
+            let (frame, heard) = (&self.carriers.measured[source], &inbox.measured[source]);
+            let is_lost = frame.age.is_none_or(|age| age > stale);
+            heard.refused.map(Doubt::SourceRefused).or(frame.doubt()).filter(|_| is_lost)
         };
-        lost.find_map(doubt)
+        self.setup.sources.iter().filter_map(|follow| frames.measured_source(follow)).find_map(doubt)
     }
 
     /// Continues with other regions. Nothing is allocated or freed: `next` then holds the former parts.

@@ -2,15 +2,13 @@
 
 use elbowroom_cell::{Cell, MeasuredSource};
 use elbowroom_interlock::Micros;
-use elbowroom_monitor::SourceState;
+use elbowroom_monitor::{SourceLimits, SourceState};
 use elbowroom_spatial::{FrameMotion, Pose, Rotation, Vec3};
 
+use super::doubt::Doubt;
 use super::followed_robot::SAME_MOTION;
 use super::inbox::Heard;
 use crate::messages::JointState;
-
-/// Speed (m/s) that no belt exceeds: the default limit of what regions follow.
-const FASTEST_M_S: f64 = 10.0;
 
 /// State of a source that is not known: it is stale in every tick.
 pub(crate) const LOST: SourceState =
@@ -25,7 +23,7 @@ pub(crate) struct MeasuredFrame {
     /// Its velocity; `None` if it is unknown. A source of unknown velocity does not count as at rest.
     velocity: Option<Velocity>,
     /// Whether the numbers of the last message say no place.
-    pub(crate) is_unclear: bool,
+    is_unclear: bool,
     /// Age of the place; `None` if place or velocity are unknown.
     pub(crate) age: Option<Micros>,
 }
@@ -63,6 +61,15 @@ impl MeasuredFrame {
         }
         let stamp = heard.stamp.filter(|_| self.velocity.is_some());
         self.age = stamp.map(|stamp| heard.now(now) - stamp);
+    }
+
+    /// Why the last message that was accepted does not say where the source is and how it moves.
+    pub(super) fn doubt(&self) -> Option<Doubt> {
+        match (self.is_unclear, self.last, self.velocity) {
+            (true, ..) => Some(Doubt::SourceUnclear),
+            (false, Some(_), None) => Some(Doubt::SourceVelocity),
+            _ => None,
+        }
     }
 
     /// State of the source, without its time; `None` if it is unknown.
@@ -131,7 +138,8 @@ impl MeasuredFrame {
                 // An encoder that wraps itself has not gone all the way back. Which way it went is known only if it cannot
                 // have gone half the way round.
                 let rounds = (travelled / wrap).round() * wrap;
-                (2.0 * FASTEST_M_S < wrap * rate).then_some(Velocity::Speed((travelled - rounds) * rate))
+                (2.0 * SourceLimits::default().speed_m_s < wrap * rate)
+                    .then_some(Velocity::Speed((travelled - rounds) * rate))
             }
             (MeasuredSource::Object(_), Place::Pose(before), Place::Pose(now)) => {
                 let turned = now.rotation * before.rotation.inverse();
