@@ -2,8 +2,7 @@
 
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, Mutex};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::wire::{self, Message};
@@ -19,40 +18,34 @@ use crate::keys::Keys;
 use crate::locked::locked;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::silence_watch::SilenceWatch;
+use crate::worker::Worker;
 
 /// Capacity of the arbiter's queue, in messages; further messages are dropped, and the guards repeat them.
 const WAITING: usize = 1024;
 /// Interval at which the holders are published; a change is published at once.
 const PERIOD: Duration = Duration::from_millis(100);
+const PERIOD_US: Micros = Micros(100_000);
 
-/// Longest wait for the arbiter's thread; it normally answers much sooner.
-const ANSWER: Duration = Duration::from_secs(2);
-
-/// Input of the arbiter's thread.
-enum Incoming {
-    /// Bytes under the key of a robot.
-    Message { robot: RobotSlot, bytes: Vec<u8> },
-    /// A request to clear a robot, or only the question whether it may be cleared.
-    Clear { robot: RobotSlot, is_question: bool, answer: SyncSender<Result<(), Micros>> },
+/// Bytes under the key of a robot.
+struct Incoming {
+    robot: RobotSlot,
+    bytes: Vec<u8>,
 }
 
-/// Why a robot is not cleared.
+/// Why a robot is not cleared: it has sent a message lately, so its grants may still be valid, and it may move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum NotCleared {
-    /// The robot has sent a message lately: its grants may still be valid, and it may move.
-    #[error("it has spoken lately: it must be silent for another {:.1} s, so that it holds no grant and has come to rest", .0.0 as f64 * 1e-6)]
-    Spoke(Micros),
-    /// The arbiter has ended.
-    #[error("the arbiter does not answer")]
-    NoAnswer,
+#[error("it has spoken lately: it must be silent for another {:.1} s, so that it holds no grant and has come to rest", .missing.0 as f64 * 1e-6)]
+pub struct NotCleared {
+    /// The time for which it must still be silent.
+    pub missing: Micros,
 }
 
 /// A running arbiter. It ends when it is dropped.
 pub struct ArbiterService {
+    core: Arc<Mutex<ArbiterCore>>,
     subscriptions: Vec<Subscription>,
     inbox: Option<SyncSender<Incoming>>,
-    slots: Arc<Mutex<Vec<SlotStatus>>>,
-    thread: Option<JoinHandle<()>>,
+    worker: Option<Worker>,
     // Kept because a network may end with its last owner.
     _network: Arc<dyn Network>,
 }
@@ -66,6 +59,7 @@ impl ArbiterService {
         cell: &Arc<Cell>,
         network: &Arc<dyn Network>,
         boot: u64,
+        clock: Clock,
         on_event: Option<EventHandler>,
     ) -> Result<Option<Self>, NetworkError> {
         let Some(settings) = settings(cell) else { return Ok(None) };
@@ -77,36 +71,38 @@ impl ArbiterService {
             let handler = Box::new(move |bytes: &[u8]| {
                 if bytes.len() <= wire::MAX_BYTES {
                     // A full queue drops the message; the guard repeats it.
-                    let _ = inbox.try_send(Incoming::Message { robot: slot, bytes: bytes.to_vec() });
+                    let _ = inbox.try_send(Incoming { robot: slot, bytes: bytes.to_vec() });
                 }
             });
             subscriptions.push(network.subscribe(&keys.interlock_state(&robot.name), handler)?);
             grants.push(network.publisher(&keys.interlock_grants(&robot.name), Urgency::RealTime)?);
         }
-        let published: Arc<Mutex<Vec<SlotStatus>>> = Arc::default();
         let robots: Vec<String> = cell.robots.iter().map(|r| r.name.clone()).collect();
         let in_regions = robots.iter().zip(&settings.robots);
         let watched: Vec<_> = in_regions.map(|(name, robot)| (!robot.slots.is_empty()).then(|| name.clone())).collect();
-        let clock = Clock::start();
-        let running = Running {
+        let mut core = ArbiterCore {
             slots: slot_regions(cell, settings.slots),
             silence: SilenceWatch::new(watched.into_iter(), clock.micros()),
             robots,
             arbiter: Arbiter::new(settings, Boot(boot)),
             grants,
             status: network.publisher(&keys.interlocks(), Urgency::Display)?,
-            published: published.clone(),
+            published: None,
             clock,
             on_event,
         };
-        let thread = std::thread::Builder::new().name("arbiter".into()).spawn(move || running.run(&waiting));
-        let (inbox, thread) = (Some(inbox), thread.ok());
-        Ok(Some(Self { subscriptions, inbox, slots: published, thread, _network: network.clone() }))
+        // The first question starts the arbiter's silence timers: robots that never send a message are silent from now on.
+        let _ = core.arbiter.may_clear(RobotSlot(0), clock.micros());
+        let core = Arc::new(Mutex::new(core));
+        let running = core.clone();
+        let step = move |longest| step(&running, &waiting, longest);
+        let worker = Some(Worker::start("arbiter", clock, PERIOD, Box::new(step)));
+        Ok(Some(Self { core, subscriptions, inbox: Some(inbox), worker, _network: network.clone() }))
     }
 
     /// Returns the holder and the queue of each exchange region.
     pub fn slots(&self) -> Vec<SlotStatus> {
-        locked(&self.slots).clone()
+        locked(&self.core).slot_statuses()
     }
 
     /// Whether a robot has been silent for long enough to be cleared.
@@ -114,7 +110,9 @@ impl ArbiterService {
     /// # Errors
     /// [`NotCleared`].
     pub fn may_clear(&self, robot: RobotId) -> Result<(), NotCleared> {
-        self.ask(robot, true)
+        let mut core = locked(&self.core);
+        let now = core.clock.micros();
+        core.arbiter.may_clear(RobotSlot(robot.0), now).map_err(|missing| NotCleared { missing })
     }
 
     /// Declares that a silent robot was seen at rest outside all exchange regions ([`Arbiter::clear`]).
@@ -122,15 +120,7 @@ impl ArbiterService {
     /// # Errors
     /// [`NotCleared`]; then nothing has changed.
     pub fn clear(&self, robot: RobotId) -> Result<(), NotCleared> {
-        self.ask(robot, false)
-    }
-
-    fn ask(&self, robot: RobotId, is_question: bool) -> Result<(), NotCleared> {
-        let (answer, answered) = mpsc::sync_channel(1);
-        let request = Incoming::Clear { robot: RobotSlot(robot.0), is_question, answer };
-        let sent = self.inbox.as_ref().is_some_and(|inbox| inbox.send(request).is_ok());
-        let answer = if sent { answered.recv_timeout(ANSWER).ok() } else { None };
-        answer.ok_or(NotCleared::NoAnswer)?.map_err(NotCleared::Spoke)
+        locked(&self.core).clear(RobotSlot(robot.0)).map_err(|missing| NotCleared { missing })
     }
 }
 
@@ -139,9 +129,7 @@ impl Drop for ArbiterService {
         // The handlers hold the other senders.
         self.subscriptions.clear();
         self.inbox = None;
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
+        self.worker = None;
     }
 }
 
@@ -177,7 +165,8 @@ fn slot_regions(cell: &Cell, count: usize) -> Vec<Vec<String>> {
     (0..count).map(SlotId).map(of).collect()
 }
 
-struct Running {
+/// An arbiter with its publishers.
+struct ArbiterCore {
     arbiter: Arbiter,
     /// Names of the regions, per slot.
     slots: Vec<Vec<String>>,
@@ -185,34 +174,33 @@ struct Running {
     silence: SilenceWatch,
     grants: Vec<Box<dyn Publisher>>,
     status: Box<dyn Publisher>,
-    published: Arc<Mutex<Vec<SlotStatus>>>,
+    /// Time of the last publication of the holders.
+    published: Option<Micros>,
     clock: Clock,
     on_event: Option<EventHandler>,
 }
 
-impl Running {
-    fn run(mut self, waiting: &Receiver<Incoming>) {
-        let mut published: Option<Instant> = None;
-        // The first question starts the arbiter's silence timers: robots that never send a message are silent from now on.
-        let _ = self.clear(RobotSlot(0), true);
-        loop {
-            let has_changed = match waiting.recv_timeout(PERIOD) {
-                Ok(Incoming::Message { robot, bytes }) => self.take(robot, &bytes),
-                Ok(Incoming::Clear { robot, is_question, answer }) => {
-                    let cleared = self.clear(robot, is_question);
-                    // The caller may have stopped waiting.
-                    let _ = answer.send(cleared);
-                    !is_question && cleared.is_ok()
-                }
-                Err(RecvTimeoutError::Timeout) => false,
-                Err(RecvTimeoutError::Disconnected) => return,
-            };
-            if has_changed || published.is_none_or(|at| at.elapsed() >= PERIOD) {
-                published = Some(Instant::now());
-                self.publish();
-                for line in self.silence.look(self.clock.micros()) {
-                    self.say(&line);
-                }
+/// Waits for a message, and handles it; publishes the holders after a change, and from time to time.
+fn step(core: &Mutex<ArbiterCore>, waiting: &Receiver<Incoming>, longest: Duration) -> bool {
+    let incoming = match waiting.recv_timeout(longest) {
+        Ok(incoming) => Some(incoming),
+        Err(RecvTimeoutError::Timeout) => None,
+        Err(RecvTimeoutError::Disconnected) => return false,
+    };
+    let mut core = locked(core);
+    let has_changed = incoming.is_some_and(|Incoming { robot, bytes }| core.take(robot, &bytes));
+    core.publish_if_due(has_changed);
+    true
+}
+
+impl ArbiterCore {
+    fn publish_if_due(&mut self, has_changed: bool) {
+        let now = self.clock.micros();
+        if has_changed || self.published.is_none_or(|at| now - at >= PERIOD_US) {
+            self.published = Some(now);
+            self.publish();
+            for line in self.silence.look(now) {
+                self.say(&line);
             }
         }
     }
@@ -232,14 +220,11 @@ impl Running {
         self.send(outputs)
     }
 
-    fn clear(&mut self, robot: RobotSlot, is_question: bool) -> Result<(), Micros> {
-        let now = self.clock.micros();
-        if is_question {
-            return self.arbiter.may_clear(robot, now);
-        }
-        let outputs = self.arbiter.clear(robot, now)?;
+    fn clear(&mut self, robot: RobotSlot) -> Result<(), Micros> {
+        let outputs = self.arbiter.clear(robot, self.clock.micros())?;
         self.silence.cleared(robot);
         self.send(outputs);
+        self.publish_if_due(true);
         Ok(())
     }
 
@@ -264,6 +249,12 @@ impl Running {
     }
 
     fn publish(&mut self) {
+        if let Ok(json) = serde_json::to_vec(&self.slot_statuses()) {
+            self.status.publish(&json);
+        }
+    }
+
+    fn slot_statuses(&self) -> Vec<SlotStatus> {
         let name = |robot: RobotSlot| self.robots[robot.0].clone();
         let slot = |(i, regions): (usize, &Vec<String>)| SlotStatus {
             regions: regions.clone(),
@@ -271,11 +262,7 @@ impl Running {
             queue: self.arbiter.queue(SlotId(i)).iter().map(|r| name(*r)).collect(),
             age_s: 0.0,
         };
-        let slots: Vec<SlotStatus> = self.slots.iter().enumerate().map(slot).collect();
-        if let Ok(json) = serde_json::to_vec(&slots) {
-            self.status.publish(&json);
-        }
-        *locked(&self.published) = slots;
+        self.slots.iter().enumerate().map(slot).collect()
     }
 
     fn words(&self, event: &ArbiterEvent) -> String {

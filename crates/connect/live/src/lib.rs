@@ -69,8 +69,11 @@ mod service_options;
 mod service_start;
 mod silence_watch;
 mod simulated_controllers;
+#[cfg(test)]
+mod simulated_service;
 mod simulated_sources;
 mod switch_requests;
+mod worker;
 
 pub use arbiter_service::{ArbiterService, NotCleared};
 pub use cell_versions::{CellVersions, NoVersion};

@@ -3,14 +3,15 @@
 use std::collections::BTreeSet;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, Mutex};
-use std::thread::JoinHandle;
 use std::time::Duration;
 
 use elbowroom_cell::{Cell, CellRegion, CellRegionId, RegionEdit};
+use elbowroom_interlock::Micros;
 use elbowroom_monitor::Life;
 use serde::{Deserialize, Serialize};
 
 use crate::cell_versions::CellVersions;
+use crate::clock::Clock;
 use crate::configuration_number::configuration_digits;
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
@@ -18,11 +19,13 @@ use crate::locked::locked;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::region_journal::{JournalError, RegionJournal};
 use crate::regions_table::{RegionTable, RegionTableMessage};
+use crate::worker::Worker;
 
 /// Capacity of the request queue; further requests are dropped.
 const WAITING: usize = 1024;
 /// Interval at which the table is repeated; a change is published at once.
 const PERIOD: Duration = Duration::from_millis(100);
+const PERIOD_US: Micros = Micros(100_000);
 
 /// A request of a program to switch a temporary region.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -144,7 +147,7 @@ pub struct RegionKeeper {
     at_start: String,
     subscription: Option<Subscription>,
     inbox: Option<SyncSender<Incoming>>,
-    thread: Option<JoinHandle<()>>,
+    worker: Option<Worker>,
     // Kept because a network may end with its last owner.
     _network: Arc<dyn Network>,
 }
@@ -158,7 +161,7 @@ impl RegionKeeper {
     /// [`NetworkError`] if the keys cannot be used.
     pub(crate) fn start(
         versions: &CellVersions,
-        network: &Arc<dyn Network>,
+        (network, clock): (&Arc<dyn Network>, Clock),
         boot: u64,
         programs: ProgramSwitches,
         journal: Result<RegionJournal, JournalError>,
@@ -180,14 +183,16 @@ impl RegionKeeper {
         });
         let subscription = network.subscribe(&keys.switch(), handler)?;
         let publisher = network.publisher(&keys.regions(), Urgency::RealTime)?;
-        let running = Running { kept: kept.clone(), publisher, programs, ignored: Ignored::default() };
-        let thread = std::thread::Builder::new().name("regions".into()).spawn(move || running.run(&waiting));
+        let mut running =
+            Running { kept: kept.clone(), publisher, programs, ignored: Ignored::default(), clock, published: None };
+        let step = move |longest| running.step(&waiting, longest);
+        let worker = Some(Worker::start("regions", clock, PERIOD, Box::new(step)));
         Ok(Self {
             kept,
             at_start,
             subscription: Some(subscription),
             inbox: Some(inbox),
-            thread: thread.ok(),
+            worker,
             _network: network.clone(),
         })
     }
@@ -272,18 +277,27 @@ struct Running {
     publisher: Box<dyn Publisher>,
     programs: ProgramSwitches,
     ignored: Ignored,
+    clock: Clock,
+    /// Time of the last publication.
+    published: Option<Micros>,
 }
 
 impl Running {
-    fn run(mut self, waiting: &Receiver<Incoming>) {
-        loop {
-            self.publish();
-            match waiting.recv_timeout(PERIOD) {
-                Ok(Incoming::Request(request)) => self.obey(&request),
-                Ok(Incoming::Change) | Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return,
+    /// Waits for input, and handles it; publishes the table after each input, and from time to time.
+    fn step(&mut self, waiting: &Receiver<Incoming>, longest: Duration) -> bool {
+        match waiting.recv_timeout(if self.published.is_none() { Duration::ZERO } else { longest }) {
+            Ok(Incoming::Request(request)) => self.obey(&request),
+            Ok(Incoming::Change) => {}
+            Err(RecvTimeoutError::Timeout) => {
+                if self.published.is_some_and(|at| self.clock.micros() - at < PERIOD_US) {
+                    return true;
+                }
             }
+            Err(RecvTimeoutError::Disconnected) => return false,
         }
+        self.published = Some(self.clock.micros());
+        self.publish();
+        true
     }
 
     fn publish(&mut self) {
@@ -337,8 +351,6 @@ impl Drop for RegionKeeper {
         // The subscription's handler holds the other sender.
         self.subscription = None;
         self.inbox = None;
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
+        self.worker = None;
     }
 }

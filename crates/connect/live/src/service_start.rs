@@ -5,9 +5,8 @@ use std::time::Duration;
 
 use elbowroom_cell::configure::MonitorSetup;
 use elbowroom_cell::{Cell, EditedRegions, configure};
-use elbowroom_formats::Diagnostic;
 use elbowroom_interlock::{Boot, Micros};
-use elbowroom_monitor::{Life, RegionKind, RobotSlot};
+use elbowroom_monitor::{Life, RegionKind};
 use elbowroom_recording::{BagError, CellWriter, Recorder};
 use elbowroom_robot::RobotId;
 use elbowroom_view::{Server, ServerSettings, StatusFeed};
@@ -16,7 +15,6 @@ use crate::arbiter_service::ArbiterService;
 use crate::cell_observer::CellObserver;
 use crate::cell_versions::CellVersions;
 use crate::clock::{Clock, boot_number};
-use crate::configuration_number::configuration_number;
 use crate::control::{ControlParts, ControlServer, JointsHeard, NodesHeard};
 use crate::event_handler::EventHandler;
 use crate::keys::Keys;
@@ -24,7 +22,7 @@ use crate::measured_sources::MeasuredSources;
 use crate::network::{
     AuthenticatedNetwork, JoinedNetworks, Network, NetworkError, UdpNetwork, ZenohNetwork, ZenohSettings,
 };
-use crate::node::{Node, NodeMonitor, NodeParts};
+use crate::node::{Node, NodeParts};
 use crate::peer_watch::PeerWatch;
 use crate::region_journal::{JournalError, RegionJournal};
 use crate::region_keeper::{ProgramSwitches, RegionKeeper};
@@ -88,7 +86,14 @@ impl<'o> ServiceStart<'o> {
         let journal = self.options.journal.as_deref().filter(|journal| can_change || journal.exists());
         let journal = journal.ok_or(JournalError::NotKept).and_then(RegionJournal::open);
         let on_event = self.options.on_event.clone();
-        let keeper = RegionKeeper::start(&self.versions, &self.shared, boot_number(), programs, journal, on_event)?;
+        let keeper = RegionKeeper::start(
+            &self.versions,
+            (&self.shared, self.clock),
+            boot_number(),
+            programs,
+            journal,
+            on_event,
+        )?;
         Ok(Some(Arc::new(keeper)))
     }
 
@@ -97,7 +102,7 @@ impl<'o> ServiceStart<'o> {
             return Ok(None);
         }
         let on_event = self.options.on_event.clone();
-        Ok(ArbiterService::start(&self.cell, &self.shared, boot_number(), on_event)?.map(Arc::new))
+        Ok(ArbiterService::start(&self.cell, &self.shared, boot_number(), self.clock, on_event)?.map(Arc::new))
     }
 
     pub(crate) fn control(
@@ -160,17 +165,10 @@ impl<'o> ServiceStart<'o> {
     }
 
     fn node(&self, robot: RobotId, setup: MonitorSetup, recorder: Option<&Recorder>) -> Result<Node, ServiceError> {
-        let cell = &self.cell;
-        let slots = configure::slots(cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
-        let checksum = configuration_number(cell);
-        let monitor = NodeMonitor::new(&setup, RobotSlot(robot.0), slots, checksum, Boot(boot_number()))
-            .map_err(|e| Diagnostic::new(&cell.file, cell.robots[robot.0].line, e))?;
-        let recorder = recorder.map(|r| r.robot(robot.0 as u32, monitor.monitor(), self.clock.seconds()));
-        let (network, interlocks) = (self.of_controllers.clone(), self.shared.clone());
-        let cell = cell.clone();
-        let (clock, versions) = (self.clock, Some(self.versions.clone()));
-        let parts = NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder, versions };
-        Ok(Node::start(parts)?)
+        let networks = [self.of_controllers.clone(), self.shared.clone()];
+        let parts = NodeParts::new(&self.cell, (robot, setup), Boot(boot_number()), self.clock, networks)?;
+        let recorder = recorder.map(|r| r.robot(robot.0 as u32, parts.monitor.monitor(), self.clock.seconds()));
+        Ok(Node::start(NodeParts { recorder, versions: Some(self.versions.clone()), ..parts })?)
     }
 
     pub(crate) fn ros2(&self) -> Result<Option<Participant>, ServiceError> {
@@ -282,7 +280,7 @@ fn with_udp(zenoh: &Arc<dyn Network>, address: Option<&str>) -> Result<Arc<dyn N
 
 /// Adapts the cell to a service. A controller continues for `stale_ms` after the last override that it received, so
 /// stopping distances assume that much more reaction time; cells with exchange regions always use stopping distances.
-fn stopping_in_time(mut cell: Cell) -> Cell {
+pub(crate) fn stopping_in_time(mut cell: Cell) -> Cell {
     let has_exchange = cell.regions.iter().any(|r| matches!(r.region.kind, RegionKind::Exchange { .. }));
     let laws = &mut cell.monitoring;
     if laws.stopping_reaction_s.is_none() && has_exchange {

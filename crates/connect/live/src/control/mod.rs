@@ -18,3 +18,9 @@ pub(crate) use nodes_heard::NodesHeard;
 pub(crate) use request_handler::ControlParts;
 pub(crate) use server::ControlServer;
 pub use server::{ControlError, ControlOptions};
+#[cfg(test)]
+pub(crate) use {
+    refusal::Refusal,
+    request_handler::{Done, RequestHandler},
+    requests::{Add, Clear, Move, Remove, Switch},
+};

@@ -73,7 +73,7 @@ impl NodesHeard {
             if missing.is_empty() || now - since > LONGEST {
                 return missing;
             }
-            std::thread::sleep(POLL);
+            self.clock.sleep(POLL);
         }
     }
 }

@@ -358,12 +358,7 @@ pub(super) fn note(note: Option<&str>) -> Result<Option<&str>, Refusal> {
 }
 
 fn refused_clear(robot: &str, why: NotCleared) -> Refusal {
-    match why {
-        NotCleared::Spoke(missing) => {
-            let refusal = Refusal::new(409, format!("robot `{robot}` is not cleared: {why}"));
-            let help = "stop its node if it still runs, see that the robot stands outside, and ask again";
-            Refusal { wait_s: Some(missing.0 as f64 * 1e-6), ..refusal.help(help) }
-        }
-        NotCleared::NoAnswer => Refusal::new(500, why.to_string()),
-    }
+    let refusal = Refusal::new(409, format!("robot `{robot}` is not cleared: {why}"));
+    let help = "stop its node if it still runs, see that the robot stands outside, and ask again";
+    Refusal { wait_s: Some(why.missing.0 as f64 * 1e-6), ..refusal.help(help) }
 }

@@ -19,13 +19,15 @@ mod region_builder;
 mod standstill;
 
 use std::sync::Arc;
-use std::thread::JoinHandle;
+use std::time::Duration;
 
-use elbowroom_cell::Cell;
 use elbowroom_cell::configure::MonitorSetup;
+use elbowroom_cell::{Cell, configure};
+use elbowroom_formats::Diagnostic;
+use elbowroom_interlock::Boot;
 use elbowroom_interlock::wire::MAX_BYTES;
 use elbowroom_kinematics::ChainState;
-use elbowroom_monitor::Configuration;
+use elbowroom_monitor::{Configuration, RobotSlot};
 use elbowroom_robot::RobotId;
 use elbowroom_spatial::Pose;
 use elbowroom_status::{EventStatus, HealthStatus, RobotStatus, ServiceStatus, StatusSample};
@@ -34,15 +36,18 @@ use elbowroom_recording::TickRecorder;
 
 use crate::cell_versions::CellVersions;
 use crate::clock::Clock;
+use crate::configuration_number::configuration_number;
 use crate::keys::Keys;
 use crate::measured_sources::key_of;
 use crate::network::{Network, NetworkError, Publisher, Subscription, Urgency};
 use crate::regions_table::RegionTableMessage;
+use crate::worker::Worker;
 use doubt::Doubt;
 use inbox::Inbox;
 use next_configuration::NodeVersion;
 use node_tick::follows;
 use outbox::Outbox;
+use region_builder::AGAIN_AFTER;
 
 pub(crate) use attached_volumes::AttachedVolumes;
 pub(crate) use inbox::Heard;
@@ -51,6 +56,9 @@ pub(crate) use measured_frame::{LOST, MeasuredFrame};
 pub use node_monitor::NodeMonitor;
 pub use node_tick::NodeTick;
 pub use region_builder::{RegionBuilder, RegionsError};
+
+/// Longest wait for something to send.
+const NOTHING_TO_SEND: Duration = Duration::from_secs(1);
 
 /// Parts of a node.
 pub struct NodeParts {
@@ -77,12 +85,34 @@ pub struct NodeParts {
     pub versions: Option<Arc<CellVersions>>,
 }
 
+impl NodeParts {
+    /// Parts of the node of a robot: without a recorder, and with the regions of the cell file alone. `networks` are that
+    /// of the controllers and that of the arbiter; `boot` is higher than at earlier starts.
+    ///
+    /// # Errors
+    /// A monitor cannot have these regions.
+    pub fn new(
+        cell: &Arc<Cell>,
+        (robot, setup): (RobotId, MonitorSetup),
+        boot: Boot,
+        clock: Clock,
+        [network, interlocks]: [Arc<dyn Network>; 2],
+    ) -> Result<Self, Diagnostic> {
+        let slots = configure::slots(cell).iter().flatten().map(|slot| slot.0 + 1).max().unwrap_or(0);
+        let checksum = configuration_number(cell);
+        let monitor = NodeMonitor::new(&setup, RobotSlot(robot.0), slots, checksum, boot)
+            .map_err(|e| Diagnostic::new(&cell.file, cell.robots[robot.0].line, e))?;
+        let (cell, recorder, versions) = (cell.clone(), None, None);
+        Ok(Self { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder, versions })
+    }
+}
+
 /// A running node. It ends when it is dropped.
 pub struct Node {
     is_guard: bool,
     inbox: Arc<Inbox>,
     outbox: Arc<Outbox>,
-    threads: Vec<JoinHandle<()>>,
+    workers: Vec<Worker>,
     _subscriptions: Vec<Subscription>,
     // Kept because a network may end with its last owner.
     _networks: [Arc<dyn Network>; 2],
@@ -118,7 +148,9 @@ impl Node {
         let grants = inbox.clone();
         let handler = Box::new(move |bytes: &[u8]| grants.take_grants(bytes));
         subscriptions.push(interlocks.subscribe(&keys.interlock_grants(&name), handler)?);
-        let sender = Sender {
+        let mut sender = Sender {
+            bytes: Vec::with_capacity(256),
+            state: Vec::with_capacity(MAX_BYTES),
             answers: network.publisher(&keys.speed_override(&name), Urgency::RealTime)?,
             statuses: network.publisher(&keys.status(&name), Urgency::Display)?,
             states: interlocks.publisher(&keys.interlock_state(&name), Urgency::RealTime)?,
@@ -127,19 +159,18 @@ impl Node {
             cell,
             robot,
         };
+        let mut workers = Vec::new();
+        if let Some(mut builder) = builder {
+            let build = Box::new(move |longest| builder.wait_and_build(clock, longest));
+            workers.push(Worker::start(&format!("build {name}"), clock, AGAIN_AFTER, build));
+        }
+        let stale = tick.stale();
+        let tick = Box::new(move |longest| tick.wait_and_tick(clock, longest));
+        workers.push(Worker::start(&format!("tick {name}"), clock, stale, tick));
         let sending = outbox.clone();
-        let build = || {
-            if let Some(builder) = builder {
-                builder.run();
-            }
-        };
-        let threads = [
-            std::thread::Builder::new().name(format!("build {name}")).spawn(build),
-            std::thread::Builder::new().name(format!("tick {name}")).spawn(move || while tick.wait_and_tick(clock) {}),
-            std::thread::Builder::new().name(format!("send {name}")).spawn(move || sender.run(&sending)),
-        ];
-        let threads = threads.into_iter().map(|thread| thread.expect("the system gives no thread")).collect();
-        Ok(Self { is_guard, inbox, outbox, threads, _subscriptions: subscriptions, _networks: [network, interlocks] })
+        let send = Box::new(move |longest| sender.wait_and_send(&sending, longest));
+        workers.push(Worker::start(&format!("send {name}"), clock, NOTHING_TO_SEND, send));
+        Ok(Self { is_guard, inbox, outbox, workers, _subscriptions: subscriptions, _networks: [network, interlocks] })
     }
 }
 
@@ -147,10 +178,8 @@ impl Drop for Node {
     fn drop(&mut self) {
         self.inbox.close();
         self.outbox.put(|o| o.is_closed = true);
-        for thread in self.threads.drain(..) {
-            // A thread that panicked has stopped answering, so the controller has stopped by itself.
-            let _ = thread.join();
-        }
+        // A thread that panicked has stopped answering, so the controller has stopped by itself.
+        self.workers.clear();
     }
 }
 
@@ -197,35 +226,36 @@ struct Sender {
     chain: ChainState,
     cell: Arc<Cell>,
     robot: RobotId,
+    /// Memory for an answer, and for a message to the arbiter.
+    bytes: Vec<u8>,
+    state: Vec<u8>,
 }
 
 impl Sender {
-    fn run(mut self, outbox: &Outbox) {
-        let mut bytes = Vec::with_capacity(256);
-        let mut state = Vec::with_capacity(MAX_BYTES);
-        loop {
-            state.clear();
-            let (answer, status) = {
-                let mut outgoing = outbox.wait();
-                if outgoing.is_closed {
-                    return;
-                }
-                std::mem::swap(&mut state, &mut outgoing.state);
-                let sample = outgoing.take_sample(&mut self.sample);
-                let doubt = outgoing.doubt;
-                (outgoing.answer.take(), sample.map(|sample| (sample, outgoing.version.clone(), doubt)))
-            };
-            if let Some(answer) = answer {
-                answer.encode(&mut bytes);
-                self.answers.publish(&bytes);
+    /// Waits until there is something to send, and sends it. False at the end.
+    fn wait_and_send(&mut self, outbox: &Outbox, longest: Duration) -> bool {
+        self.state.clear();
+        let (answer, status) = {
+            let mut outgoing = outbox.wait(longest);
+            if outgoing.is_closed {
+                return false;
             }
-            if !state.is_empty() {
-                self.states.publish(&state);
-            }
-            if let Some(((t_s, sequence, health), version, doubt)) = status {
-                self.publish_status(t_s, sequence, health, &version, doubt);
-            }
+            std::mem::swap(&mut self.state, &mut outgoing.state);
+            let sample = outgoing.take_sample(&mut self.sample);
+            let doubt = outgoing.doubt;
+            (outgoing.answer.take(), sample.map(|sample| (sample, outgoing.version.clone(), doubt)))
+        };
+        if let Some(answer) = answer {
+            answer.encode(&mut self.bytes);
+            self.answers.publish(&self.bytes);
         }
+        if !self.state.is_empty() {
+            self.states.publish(&self.state);
+        }
+        if let Some(((t_s, sequence, health), version, doubt)) = status {
+            self.publish_status(t_s, sequence, health, &version, doubt);
+        }
+        true
     }
 
     fn publish_status(

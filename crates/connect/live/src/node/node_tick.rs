@@ -149,10 +149,15 @@ impl NodeTick {
         StatusSample::new(self.guarded.monitor())
     }
 
+    /// Time without joint values after which they are stale.
+    pub(super) fn stale(&self) -> Duration {
+        Duration::from_micros(self.stale.0)
+    }
+
     /// Waits for joint values and answers them; without any, ticks when the last ones are stale. False at the end.
-    pub(super) fn wait_and_tick(&mut self, clock: Clock) -> bool {
+    pub(super) fn wait_and_tick(&mut self, clock: Clock, longest: Duration) -> bool {
         let inbox = self.inbox.clone();
-        let contents = inbox.wait(Duration::from_micros(self.stale.0));
+        let contents = inbox.wait(longest);
         if contents.is_closed {
             return false;
         }

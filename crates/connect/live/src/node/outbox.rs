@@ -1,6 +1,7 @@
 //! Messages that a node has to send.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use elbowroom_interlock::wire::MAX_BYTES;
 use elbowroom_monitor::Monitor;
@@ -78,9 +79,9 @@ impl Outbox {
         self.news.notify_one();
     }
 
-    /// Waits until there is something to send.
-    pub(super) fn wait(&self) -> MutexGuard<'_, Outgoing> {
-        let waited = self.news.wait_while(self.lock(), |o| o.is_empty());
-        waited.unwrap_or_else(PoisonError::into_inner)
+    /// Waits until there is something to send, at most for this time.
+    pub(super) fn wait(&self, longest: Duration) -> MutexGuard<'_, Outgoing> {
+        let waited = self.news.wait_timeout_while(self.lock(), longest, |o| o.is_empty());
+        waited.unwrap_or_else(PoisonError::into_inner).0
     }
 }

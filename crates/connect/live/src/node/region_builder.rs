@@ -12,10 +12,11 @@ use thiserror::Error;
 use super::inbox::{Inbox, Wanted};
 use super::next_configuration::{NextConfiguration, NodeVersion};
 use crate::cell_versions::{CellVersions, NoVersion};
+use crate::clock::Clock;
 use crate::configuration_number::configuration_digits;
 
 /// Longest wait for something to build, and base of the pause after a failure: a file may be missing for a while.
-const AGAIN_AFTER: Duration = Duration::from_secs(1);
+pub(super) const AGAIN_AFTER: Duration = Duration::from_secs(1);
 
 /// Why a node cannot have the regions of a table.
 #[derive(Debug, Error)]
@@ -75,15 +76,15 @@ impl RegionBuilder {
         Ok(true)
     }
 
-    /// Builds whenever other regions are wanted, until the node ends.
-    pub(super) fn run(mut self) {
-        while self.inbox.wait_for_wanted(AGAIN_AFTER) {
-            if self.build().is_err() {
-                // The next table requests it again; the status says that the node has stopped, or continues with the
-                // former regions.
-                std::thread::sleep(AGAIN_AFTER / 4);
-            }
+    /// Waits until other regions are wanted, and builds them. False at the end.
+    pub(super) fn wait_and_build(&mut self, clock: Clock, longest: Duration) -> bool {
+        let goes_on = self.inbox.wait_for_wanted(longest);
+        if goes_on && self.build().is_err() {
+            // The next table requests it again; the status says that the node has stopped, or continues with the
+            // former regions.
+            clock.sleep(AGAIN_AFTER / 4);
         }
+        goes_on
     }
 
     fn next(&mut self, wanted: &Wanted, now: &Arc<Cell>) -> Result<Box<NextConfiguration>, RegionsError> {

@@ -7,9 +7,8 @@ use std::sync::Arc;
 use elbowroom_cell::{Cell, configure};
 use elbowroom_interlock::Boot;
 use elbowroom_live::network::Network;
-use elbowroom_live::node::{NodeMonitor, NodeParts};
-use elbowroom_live::{Clock, Node, configuration_number};
-use elbowroom_monitor::RobotSlot;
+use elbowroom_live::node::NodeParts;
+use elbowroom_live::{Clock, Node};
 use elbowroom_robot::RobotId;
 
 /// Makes a cell of two carriages named `left` and `right`, 0.9 m apart, that move up from 0 to 2 m. `more` is added to
@@ -60,11 +59,9 @@ warning = {warning_mm}
 
 /// Starts the node of the only robot of a cell.
 pub fn start_node(cell: &Cell, clock: Clock, network: Arc<dyn Network>) -> Node {
-    let (cell, checksum) = (Arc::new(cell.clone()), configuration_number(cell));
-    let setup = configure::setups(&cell).expect("setups").remove(0);
-    let monitor = NodeMonitor::new(&setup, RobotSlot(0), 0, checksum, Boot(1)).expect("a monitor");
-    let (robot, interlocks) = (RobotId(0), network.clone());
-    let (recorder, versions) = (None, None);
-    let parts = NodeParts { cell, robot, setup, monitor, checksum, clock, network, interlocks, recorder, versions };
+    let setup = configure::setups(cell).expect("setups").remove(0);
+    let networks = [network.clone(), network];
+    let parts =
+        NodeParts::new(&Arc::new(cell.clone()), (RobotId(0), setup), Boot(1), clock, networks).expect("a monitor");
     Node::start(parts).expect("a node")
 }
