@@ -129,6 +129,21 @@ fn a_holder_that_can_stop_yields_to_a_robot_that_entered_without_the_slot() {
     assert_eq!(arbiter.request(A, RIGHT, 0.0), Grant::Held);
 }
 
+/// A robot that grips a part inside a region, or starts there, is inside without the slot.
+#[test]
+fn a_holder_that_may_come_to_rest_inside_does_not_go_on_towards_a_robot_that_is_inside() {
+    let arbiter = arbiter();
+    arbiter.publish(A, LEFT, Occupancy::Committed, 0.0);
+    assert_eq!(arbiter.request(A, LEFT, 0.0), Grant::Held);
+    arbiter.publish(A, RIGHT, Occupancy::Inside, 0.0);
+    assert_eq!(arbiter.request(A, LEFT, 0.0), Grant::Waiting(RIGHT));
+    assert_eq!(arbiter.holder(A), Some(LEFT), "it may come to rest inside");
+    assert_eq!(arbiter.request(A, RIGHT, 0.0), Grant::Deadlock);
+    arbiter.publish(A, RIGHT, Occupancy::Warning, 0.0);
+    assert_eq!(arbiter.request(A, LEFT, 0.0), Grant::Held);
+    assert_eq!(arbiter.request(A, RIGHT, 0.0), Grant::Waiting(LEFT));
+}
+
 #[test]
 fn a_robot_that_publishes_is_not_cleared() {
     let arbiter = arbiter();

@@ -203,10 +203,17 @@ impl ZoneArbiter {
         })
     }
 
-    /// Whether every robot of the cycle is inside a region of some slot, so that none can yield.
+    /// Whether no robot of the cycle can yield: each is inside a region of some slot, or may come to rest there beside one
+    /// that is inside.
     fn is_stuck(&self, cycle: RobotSet) -> bool {
-        let is_inside = |r| self.state.all_slots().any(|s| self.occupancy(s, r) == Occupancy::Inside);
-        cycle.iter().all(is_inside)
+        let is_inside = |slot, robot| self.occupancy(slot, robot) == Occupancy::Inside;
+        let another_is_inside = |slot, robot| cycle.iter().any(|other| other != robot && is_inside(slot, other));
+        let cannot_yield = |slot, robot| match self.occupancy(slot, robot) {
+            Occupancy::Inside => true,
+            Occupancy::Committed => another_is_inside(slot, robot),
+            _ => false,
+        };
+        cycle.iter().all(|robot| self.state.all_slots().any(|slot| cannot_yield(slot, robot)))
     }
 
     /// The robot that yields in the cycle: the first (by index) that holds a slot and can stop outside all slots that it
@@ -249,13 +256,20 @@ impl ZoneArbiter {
     }
 
     /// Repeats the checks for the holder. A holder that can stop outside keeps the slot only while all other robots are
-    /// known to be outside. Another robot may have entered without the slot (by starting there, or because a region
-    /// moved or was switched on), or become silent.
+    /// known to be outside. Another robot may have entered without the slot (by starting there, by gripping a part there,
+    /// or because a region moved or was switched on), or become silent. A holder that may come to rest inside keeps the
+    /// slot, but does not go on towards a robot that is inside.
     fn confirm(&self, slot: SlotId, robot: RobotSlot, now_s: f64) -> Grant {
         self.state.leave_queue(slot, robot);
-        let refusal = if self.occupancy(slot, robot).occupies() { None } else { self.occupied(slot, robot, now_s) };
+        let refusal = match self.occupancy(slot, robot) {
+            Occupancy::Inside => None,
+            Occupancy::Committed => {
+                let is_inside = |other: &RobotSlot| self.occupancy(slot, *other) == Occupancy::Inside;
+                self.state.others(slot, robot).find(is_inside).map(Grant::Waiting)
+            }
+            _ => self.occupied(slot, robot, now_s).inspect(|_| self.state.release(slot, robot)),
+        };
         let Some(refusal) = refusal else { return Grant::Held };
-        self.state.release(slot, robot);
         self.state.join_queue(slot, robot);
         refusal
     }
