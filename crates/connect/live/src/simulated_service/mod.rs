@@ -11,6 +11,7 @@ mod network;
 mod process;
 mod process_clock;
 mod rail;
+mod recording;
 mod requests;
 mod wait_reasons;
 mod waits;
@@ -75,6 +76,7 @@ fn schedule(cells: &[Rc<SimulatedCell>], seed: u64) -> Outcome {
         world.ask();
     }
     set_sleeper(None);
+    world.end_all();
     let mut findings = std::mem::take(&mut world.judge.borrow_mut().findings);
     findings.arrivals = world.arrivals();
     let counts = std::mem::take(&mut world.plan().counts);

@@ -12,6 +12,7 @@ use elbowroom_robot::RobotId;
 use super::cell::SimulatedCell;
 use super::network::{Host, SimulatedNetwork, Wires};
 use super::process_clock::{ProcessClock, ProcessId, true_us};
+use super::recording::NodeRecording;
 use crate::arbiter_service::ArbiterService;
 use crate::clock::Clock;
 use crate::control::{ControlParts, JointsHeard, NodesHeard, RequestHandler};
@@ -45,8 +46,8 @@ pub(super) struct Process {
 /// What runs in a process.
 pub(super) enum Parts {
     Arbiter(ArbiterParts),
-    /// The node of a robot; kept because it ends when it is dropped.
-    Node(#[expect(dead_code, reason = "held for its drop")] Box<Node>),
+    /// The node of a robot, and what it records.
+    Node(Box<Node>, Option<NodeRecording>),
 }
 
 /// The parts that decide about regions.
@@ -103,8 +104,14 @@ impl Start {
         self.process(Parts::Arbiter(ArbiterParts { keeper, arbiter, handler }))
     }
 
-    /// Starts the node of a robot, with the file of the cell or with the other one.
-    pub(super) fn node(self, cell: &SimulatedCell, rail: usize, has_other_file: bool) -> Process {
+    /// Starts the node of a robot, with the file of the cell or with the other one; it records into this folder.
+    pub(super) fn node(
+        self,
+        cell: &SimulatedCell,
+        rail: usize,
+        has_other_file: bool,
+        folder: Option<&Path>,
+    ) -> Process {
         let (cell, versions) =
             if has_other_file { (&cell.other, &cell.other_versions) } else { (&cell.cell, &cell.versions) };
         let networks = [self.network.clone(), self.network.clone()];
@@ -112,14 +119,29 @@ impl Start {
         let setup = configure::setups(cell).expect("setups").swap_remove(rail);
         let parts = NodeParts::new(cell, (RobotId(rail), setup), Boot(self.boot), clock, networks);
         let parts = parts.unwrap_or_else(|e| panic!("{e}"));
-        let node = Node::start(NodeParts { versions: Some(versions.clone()), ..parts }).expect("keys");
-        self.process(Parts::Node(Box::new(node)))
+        let recording = folder.map(|folder| NodeRecording::start(cell, folder, self.boot));
+        let of_robot = |r: &NodeRecording| r.recorder.robot(rail as u32, parts.monitor.monitor(), clock.seconds());
+        let recorder = recording.as_ref().map(of_robot);
+        let parts = NodeParts { recorder, versions: Some(versions.clone()), ..parts };
+        self.process(Parts::Node(Box::new(Node::start(parts).expect("keys")), recording))
     }
 }
 
 impl Process {
     pub(super) fn runs(&self) -> bool {
         true_us() >= self.paused_until_us
+    }
+
+    /// Ends it, and returns what its recording shows.
+    pub(super) fn end(self) -> Option<(u64, Option<String>)> {
+        drop(self.steps);
+        match self.parts {
+            Parts::Arbiter(_) => None,
+            Parts::Node(node, recording) => {
+                drop(node);
+                recording.map(NodeRecording::finish)
+            }
+        }
     }
 
     /// Handles what has arrived.

@@ -41,6 +41,7 @@ pub(super) struct World {
     belt: RefCell<Option<BeltSender>>,
     pub(super) waits: RefCell<Waits>,
     pub(super) programs_switch: bool,
+    is_recorded: bool,
 }
 
 /// Whoever measures the belt.
@@ -62,6 +63,7 @@ impl World {
             folder: folder.to_owned(),
             wires,
             programs_switch: random.below(4) == 0,
+            is_recorded: seed % 8 == 5,
             judge: RefCell::new(Judge::new(cell.follows, &places)),
             random: RefCell::new(random),
             processes: RefCell::default(),
@@ -98,7 +100,7 @@ impl World {
     }
 
     pub(super) fn start_node(&self, rail: usize, has_other_file: bool) {
-        let process = self.start(node_host(rail)).node(&self.cell, rail, has_other_file);
+        let process = self.start(node_host(rail)).node(&self.cell, rail, has_other_file, self.records());
         self.processes.borrow_mut().push(process);
     }
 
@@ -155,13 +157,33 @@ impl World {
         })
     }
 
+    /// Where nodes record, in one of eight schedules.
+    fn records(&self) -> Option<&Path> {
+        self.is_recorded.then_some(&self.folder)
+    }
+
     /// Ends all processes of a host.
     pub(super) fn end(&self, host: usize) {
-        let mut processes = self.processes.borrow_mut();
-        for process in processes.iter().filter(|process| process.host == host) {
+        let (ended, others) = self.processes.take().into_iter().partition(|process| process.host == host);
+        *self.processes.borrow_mut() = others;
+        self.end_these(ended);
+    }
+
+    /// Ends all processes.
+    pub(super) fn end_all(&self) {
+        let ended = self.processes.take();
+        self.end_these(ended);
+    }
+
+    fn end_these(&self, ended: Vec<Process>) {
+        for process in ended {
             locked(&self.wires).end_process(process.id);
+            let Some((ticks, difference)) = process.end() else { continue };
+            *self.plan().counts.entry("ticks replayed").or_default() += ticks;
+            if let Some(difference) = difference {
+                self.judge.borrow_mut().wrong(&difference);
+            }
         }
-        processes.retain(|process| process.host != host);
     }
 
     pub(super) fn pause(&self, host: usize, until_us: u64) {
