@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use elbowroom_cell::{Cell, Follow, Frames};
 use elbowroom_interlock::Micros;
@@ -21,8 +21,8 @@ use crate::network::{Network, NetworkError, Subscription};
 use crate::node::LOST;
 use crate::ros2::CellFeed;
 
-/// Interval between statuses of the cell: the page shows 30 pictures per second.
-const PERIOD: Duration = Duration::from_millis(33);
+/// Interval between statuses of the cell. The page shows at most one picture per status, and at least 30 per second.
+const PERIOD: Duration = Duration::from_millis(30);
 /// A robot whose status is older than this is shown as silent.
 const SILENT: Micros = Micros(500_000);
 /// Most events kept between two statuses of the cell.
@@ -63,6 +63,7 @@ impl CellObserver {
         let is_closed = Arc::new(AtomicBool::new(false));
         let (closed, cell) = (is_closed.clone(), cell.clone());
         let run = move || {
+            let mut due = Instant::now();
             while !closed.load(Ordering::SeqCst) {
                 let objects = placed_objects(&cell, &measured, clock);
                 let status = CellStatus { objects, ..together(&cell, clock, &shared) };
@@ -75,7 +76,9 @@ impl CellObserver {
                 if let Some(feed) = &feed {
                     feed.publish(status);
                 }
-                std::thread::sleep(PERIOD);
+                let now = Instant::now();
+                due = next_due(due, now);
+                std::thread::sleep(due - now);
             }
             recorder
         };
@@ -132,6 +135,11 @@ fn subscribe(
     Ok(subscriptions)
 }
 
+/// When the next status is due: the interval includes the time that the last one took, and missed ones are omitted.
+fn next_due(due: Instant, now: Instant) -> Instant {
+    (due + PERIOD).max(now)
+}
+
 /// Adds the time since arrival to the ages in a status.
 fn aged(status: &RobotStatus, age_s: f64) -> RobotStatus {
     let mut status = status.clone();
@@ -186,5 +194,19 @@ fn together(cell: &Cell, clock: Clock, shared: &Shared) -> CellStatus {
         objects: Vec::new(),
         slots,
         events: std::mem::take(&mut heard.events),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn statuses_are_periodic_and_late_ones_are_not_made_up_for() {
+        let begin = Instant::now();
+        let after = |ms: u64| begin + Duration::from_millis(ms);
+        assert_eq!(next_due(begin, after(3)), after(30));
+        assert_eq!(next_due(after(30), after(59)), after(60));
+        assert_eq!(next_due(after(60), after(200)), after(200));
     }
 }
