@@ -15,5 +15,6 @@ pub const PACKING: &str = include_str!("../assets/shared/packing.js");
 pub const KINEMATICS: &str = include_str!("../assets/shared/kinematics.js");
 /// The style of pages with cards, a 3-D scene and tables.
 pub const STYLE: &str = include_str!("../assets/report/report.css");
-/// `createStage`: the 3-D scene of the robots, objects and regions in `Data`.
-pub const STAGE: &str = include_str!("../assets/shared/stage.js");
+/// `Surfaces` and `createStage`: the 3-D scene of the robots, objects and regions in `Data`.
+pub const STAGE: &str =
+    concat!(include_str!("../assets/shared/surfaces.js"), include_str!("../assets/shared/stage.js"));

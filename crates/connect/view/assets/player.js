@@ -85,7 +85,7 @@
       document.documentElement.dataset.ready = 'true';
     };
     // A page in the background draws nothing.
-    if (document.hidden) draw(); else requestAnimationFrame(draw);
+    if (document.hidden) draw(); else requestAnimationFrame(() => { draw(); Scene.stage.flush(); });
   });
   Link.onEvents(Tables.addEvents);
 
@@ -129,7 +129,7 @@
         regions: regions.map(({ pose, ...region }) => ({ ...region, position_m: pose.slice(9) })),
         objects: shown.objects.map(({ name, pose }) => ({ name, position_m: pose.slice(9) })),
         slots: frame.slots, events: Tables.events(), drawing: Draw.state(),
-        frames_kept: History.count(), pictures: Scene.stage.rendered(), pictures_per_s: rate, clock_s: performance.now() / 1000, pixel_ratio: Scene.stage.works ? Scene.stage.pixelRatio() : null, measured_in_s: frame.measured_in_s,
+        frames_kept: History.count(), pictures: Scene.stage.rendered(), pictures_per_s: rate, clock_s: performance.now() / 1000, pixel_ratio: Scene.stage.works ? Scene.stage.pixelRatio() : null, triangles: Scene.stage.works ? Scene.stage.triangles() : null, measured_in_s: frame.measured_in_s,
       };
     },
     handles: Drag.handles,

@@ -232,8 +232,8 @@ fn a_telephone_does_not_scroll_sideways() {
     assert!(seen[0]["scroll"].as_u64() <= Some(390), "{}", seen[0]);
 }
 
-/// Makes a cell of four arms around a pallet.
-fn four_arms() -> Cell {
+/// Makes a cell of four arms around a pallet, in a file of this name.
+fn four_arms(name: &str) -> Cell {
     let models = elbowroom_testkit::folder::examples().join("models");
     let text = r#"
 version = 1
@@ -273,7 +273,7 @@ radius = 120
 height = 1500
 warning = 250
 "#;
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("four_arms.toml");
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::write(&file, text.replace("MODELS", &models.display().to_string())).unwrap();
     Cell::load(&file).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -314,6 +314,26 @@ fn running(cell: &Cell, t_s: f64) -> CellStatus {
     }
 }
 
+#[test]
+fn details_that_are_not_seen_are_not_drawn() {
+    if tools().is_none() {
+        return;
+    }
+    let server = Server::jog(&four_arms("four_arms_afar.toml"), settings()).unwrap();
+    let farther = std::iter::repeat_n(json!({ "do": "press", "key": "-" }), 8);
+    let mut steps = vec![json!({ "do": "sleep", "ms": 1500 })];
+    steps.extend(farther);
+    steps.push(json!({ "do": "sleep", "ms": 1500 }));
+    steps.push(json!({ "do": "press", "key": "f" }));
+    steps.push(json!({ "do": "sleep", "ms": 1500 }));
+    let seen = visit(&server.url(), &json!({}), &steps).unwrap();
+    let triangles = |k: usize| seen[k]["triangles"].as_f64().unwrap();
+    println!("{} triangles, {} from afar", triangles(0), triangles(9));
+    assert!(triangles(9) < 0.5 * triangles(0), "{} {}", triangles(9), triangles(0));
+    // They are back when the camera is.
+    assert_eq!(triangles(11), triangles(0));
+}
+
 struct OnDrop<'a>(&'a AtomicBool);
 
 impl Drop for OnDrop<'_> {
@@ -327,7 +347,7 @@ fn a_running_cell_moves_is_replayed_and_found_again() {
     if tools().is_none() {
         return;
     }
-    let cell = four_arms();
+    let cell = four_arms("four_arms.toml");
     let feed = StatusFeed::new();
     let server = Server::watch(&cell, &feed, settings()).unwrap();
     let ended = AtomicBool::new(false);

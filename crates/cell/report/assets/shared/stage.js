@@ -4,7 +4,8 @@
 // WebGL all functions do nothing.
 function createStage(corners, lineCount) {
   const canvas = byId('canvas'), holder = canvas.parentElement, labels = byId('labels');
-  // Without a graphics card the processor draws: then smooth edges and shining surfaces cost more than half of the time.
+  // Without a graphics card the processor draws: then smooth edges and shining surfaces cost more than half of the time. Smooth
+  // edges must be chosen here; everything else adapts to the measured time, too.
   const isSoftware = (() => {
     const gl = document.createElement('canvas').getContext('webgl2');
     if (!gl) return false;
@@ -18,49 +19,12 @@ function createStage(corners, lineCount) {
     renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware });
   } catch (error) {
     byId('no-webgl').hidden = false;
-    return { works: false, show: () => {}, fit: () => {}, look: () => {}, rendered: () => 0, onRender: () => {}, theme: () => {}, request: () => {}, add: () => {} };
+    return { works: false, show: () => {}, fit: () => {}, look: () => {}, rendered: () => 0, onRender: () => {}, theme: () => {}, request: () => {}, flush: () => {}, add: () => {} };
   }
 
-  // Vertex normals are shared where faces meet at less than 40 degrees and split elsewhere: smooth surfaces, sharp edges.
-  function geometry({ v, i: index }) {
-    const faces = index.length / 3;
-    const normals = new Float32Array(index.length);
-    const around = new Map();
-    const a = new THREE.Vector3(), b = new THREE.Vector3(), c = new THREE.Vector3();
-    for (let f = 0; f < faces; f++) {
-      a.fromArray(v, 3 * index[3 * f]);
-      b.fromArray(v, 3 * index[3 * f + 1]).sub(a);
-      c.fromArray(v, 3 * index[3 * f + 2]).sub(a);
-      b.cross(c).toArray(normals, 3 * f);
-      for (let k = 0; k < 3; k++) {
-        const corner = index[3 * f + k];
-        if (around.has(corner)) around.get(corner).push(f);
-        else around.set(corner, [f]);
-      }
-    }
-    const position = new Float32Array(9 * faces);
-    const normal = new Float32Array(9 * faces);
-    for (let f = 0; f < faces; f++) {
-      a.fromArray(normals, 3 * f);
-      const size = a.length();
-      for (let k = 0; k < 3; k++) {
-        const corner = index[3 * f + k];
-        c.set(0, 0, 0);
-        for (const other of around.get(corner)) {
-          b.fromArray(normals, 3 * other);
-          if (a.dot(b) >= 0.766 * size * b.length()) c.add(b);
-        }
-        c.normalize().toArray(normal, 9 * f + 3 * k);
-        position.set(v.subarray(3 * corner, 3 * corner + 3), 9 * f + 3 * k);
-      }
-    }
-    const out = new THREE.BufferGeometry();
-    out.setAttribute('position', new THREE.BufferAttribute(position, 3));
-    out.setAttribute('normal', new THREE.BufferAttribute(normal, 3));
-    return out;
-  }
-  const geometries = Data.meshes.map(() => null);
-  const meshOf = (index) => (geometries[index] ||= geometry(Data.meshes[index]));
+  const surfaces = Data.meshes.map(() => null);
+  const surface = (index) => (surfaces[index] ||= Surfaces.levels(Data.meshes[index]));
+  const meshOf = (index) => surface(index).fine;
 
   const scene = new THREE.Scene();
   const camera = new THREE.PerspectiveCamera(40, 1, 0.01, 200);
@@ -70,8 +34,12 @@ function createStage(corners, lineCount) {
   sun.position.set(2, -3, 5);
   scene.add(sun);
 
-  const lit = (look, shine) => (isSoftware ? new THREE.MeshLambertMaterial(look) : new THREE.MeshStandardMaterial({ ...look, ...shine }));
-  const solidMaterial = (color) => lit({ color, side: THREE.DoubleSide }, { roughness: 0.55, metalness: 0.08 });
+  // Whether light is computed per corner instead of per pixel.
+  let isSimple = isSoftware;
+  const lit = (look, shine) => (isSimple ? Surfaces.perCorner(look) : new THREE.MeshStandardMaterial({ ...look, ...shine }));
+  // Nobody sees the inside of a closed surface.
+  const sides = ({ isClosed }) => (isClosed ? {} : { side: THREE.DoubleSide });
+  const solidMaterial = (color, levels) => lit({ color, ...sides(levels) }, { roughness: 0.55, metalness: 0.08 });
   const glass = (color, opacity) => new THREE.MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false });
 
   function setPose(object, p) {
@@ -99,14 +67,18 @@ function createStage(corners, lineCount) {
     return lines;
   }
 
+  // Meshes with the levels of their details, and the size of details that are not seen, in pixels.
+  const detailed = [];
   const robots = Data.robots.map((robot) => robot.solids.map((solid) => {
-    const mesh = new THREE.Mesh(meshOf(solid.mesh), solidMaterial(solid.color));
+    const mesh = new THREE.Mesh(meshOf(solid.mesh), solidMaterial(solid.color, surface(solid.mesh)));
     scene.add(mesh);
+    detailed.push({ mesh, levels: surface(solid.mesh), pixels: 1 });
     return { mesh, solid };
   }));
   const objects = Data.objects.map((object) => {
-    const thing = new THREE.Mesh(meshOf(object.mesh), solidMaterial(object.color));
+    const thing = new THREE.Mesh(meshOf(object.mesh), solidMaterial(object.color, surface(object.mesh)));
     scene.add(thing);
+    detailed.push({ mesh: thing, levels: surface(object.mesh), pixels: 1 });
     return thing;
   });
   const regions = Data.regions.map((region) => {
@@ -116,6 +88,9 @@ function createStage(corners, lineCount) {
     const shell = region.shell === null ? null : new THREE.Mesh(meshOf(region.shell), glass(region.color, 0.13));
     group.add(solid, edges);
     if (shell) { shell.renderOrder = 2; group.add(shell); }
+    detailed.push({ mesh: solid, levels: surface(region.solid), pixels: 1 });
+    // A shell is round everywhere.
+    if (shell) detailed.push({ mesh: shell, levels: surface(region.shell), pixels: 4 });
     scene.add(group);
     const label = element('div', { className: 'label', textContent: region.name });
     label.style.borderColor = region.color;
@@ -136,7 +111,7 @@ function createStage(corners, lineCount) {
 
   // A shield of its own, shaded so that its opening is seen; in the world.
   function shaded(mesh, color) {
-    const solid = new THREE.Mesh(geometry(mesh), lit({ color, transparent: true, opacity: 0.55 }, { roughness: 0.6 }));
+    const solid = new THREE.Mesh(Surfaces.geometry(mesh), lit({ color, transparent: true, opacity: 0.55 }, { roughness: 0.6 }));
     solid.renderOrder = 3;
     return solid;
   }
@@ -155,7 +130,7 @@ function createStage(corners, lineCount) {
     const line = new THREE.Line(ends, material);
     line.frustumCulled = false;
     line.renderOrder = 5;
-    const dots = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 16, 10), new THREE.MeshBasicMaterial({ color: '#c2185b', depthTest: false })));
+    const dots = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1, 12, 8), new THREE.MeshBasicMaterial({ color: '#c2185b', depthTest: false })));
     dots.forEach((dot) => { dot.renderOrder = 6; scene.add(dot); });
     scene.add(line);
     const label = element('div', { className: 'label line' });
@@ -165,7 +140,7 @@ function createStage(corners, lineCount) {
 
   const overrideColor = (v, color = new THREE.Color()) => color.setHSL(0.33 * Math.min(1, Math.max(0, v)), 0.85, 0.45);
   const tcpDots = Data.robots.map(() => {
-    const dot = new THREE.Mesh(new THREE.SphereGeometry(1, 20, 12), new THREE.MeshBasicMaterial());
+    const dot = new THREE.Mesh(new THREE.SphereGeometry(1, 12, 8), new THREE.MeshBasicMaterial());
     scene.add(dot);
     return dot;
   });
@@ -326,41 +301,77 @@ function createStage(corners, lineCount) {
     if (shown) show(shown);
   }
 
-  // Pixels are larger while pictures follow each other slowly, and as fine as the screen's again when the scene rests.
-  const COARSEST = 0.5, SLOW_MS = 40, QUICK_MS = 20, REST_MS = 500;
+  // While a picture takes longer than at 30 per second, surfaces are drawn simpler, then pixels larger; finer ones are tried when
+  // pictures have been quick for long, each time later. When the scene rests, pixels are as fine as the screen's.
+  const COARSEST = 0.5, SLOW_MS = 33.5, QUICK_MS = 25, COUNTED = 15, REST_MS = 500;
   const finest = () => Math.min(2, window.devicePixelRatio || 1);
-  let ratio = finest(), slow = 0, quick = 0, resting = 0;
+  let ratio = finest(), counted = 0, total = 0, quick = 0, patience = 4, resting = 0;
   function setRatio(to) {
     ratio = Math.min(finest(), Math.max(COARSEST, to));
-    slow = 0;
+    counted = 0;
+    total = 0;
     quick = 0;
     renderer.setPixelRatio(ratio);
+  }
+  function simplify() {
+    isSimple = true;
+    scene.traverse((thing) => {
+      if (!thing.material?.isMeshStandardMaterial) return;
+      const { color, emissive, opacity, transparent, side } = thing.material;
+      thing.material.dispose();
+      thing.material = Surfaces.perCorner({ color, emissive, opacity, transparent, side });
+    });
+  }
+  // The mean duration of some pictures, ms, has been measured.
+  function decide(mean) {
+    quick = mean < QUICK_MS ? quick + 1 : 0;
+    if (mean > SLOW_MS && !isSimple) simplify();
+    else if (mean > SLOW_MS && ratio > COARSEST) setRatio(ratio * 0.8);
+    else if (quick >= patience && ratio < finest()) { patience *= 2; setRatio(ratio * 1.25); }
   }
   function adapt() {
     const begin = performance.now();
     requestAnimationFrame(() => {
-      const took = performance.now() - begin;
-      slow = took > SLOW_MS ? slow + 1 : Math.max(0, slow - 1);
-      quick = took < QUICK_MS ? quick + 1 : 0;
-      if (slow >= 4 && ratio > COARSEST) setRatio(ratio * 0.8);
-      else if (quick >= 120 && ratio < finest()) setRatio(ratio * 1.25);
+      counted += 1;
+      total += performance.now() - begin;
+      if (counted < COUNTED) return;
+      decide(total / counted);
+      counted = 0;
+      total = 0;
     });
     clearTimeout(resting);
-    if (ratio < finest()) resting = setTimeout(() => { if (!waiting) { setRatio(finest()); request(); } }, REST_MS);
+    if (ratio < finest()) resting = setTimeout(() => { if (!pending) { setRatio(finest()); request(); } }, REST_MS);
   }
 
-  let waiting = false, rendered = 0, beforeRender = () => {};
+  // Details that are not seen are not drawn.
+  const eye = new THREE.Vector3();
+  function chooseDetails() {
+    scene.updateMatrixWorld();
+    const slope = (2 * Math.tan((camera.fov * Math.PI) / 360)) / canvas.height;
+    for (const { mesh, levels, pixels } of detailed) {
+      const distance = eye.copy(levels.center).applyMatrix4(mesh.matrixWorld).distanceTo(camera.position) - levels.radius;
+      mesh.geometry = levels.at(pixels * slope * Math.max(camera.near, distance));
+    }
+  }
+
+  let pending = 0, rendered = 0, beforeRender = () => {};
+  function render() {
+    pending = 0;
+    rendered += 1;
+    beforeRender();
+    chooseDetails();
+    renderer.render(scene, camera);
+    adapt();
+    placeLabels();
+  }
   function request() {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => {
-      waiting = false;
-      rendered += 1;
-      beforeRender();
-      renderer.render(scene, camera);
-      adapt();
-      placeLabels();
-    });
+    pending ||= requestAnimationFrame(render);
+  }
+  // Draws what has been requested now, for those who are called once per picture: not one picture later.
+  function flush() {
+    if (!pending) return;
+    cancelAnimationFrame(pending);
+    render();
   }
 
   function theme() {
@@ -386,12 +397,13 @@ function createStage(corners, lineCount) {
   }).observe(holder);
 
   return {
-    works: true, show, fit, look, focus, isolate, theme, request, overrideColor, camera, canvas, controls, size,
+    works: true, show, fit, look, focus, isolate, theme, request, flush, overrideColor, camera, canvas, controls, size,
     add: (thing) => scene.add(thing),
     remove: (thing) => scene.remove(thing),
     shaded,
     rendered: () => rendered,
     pixelRatio: () => ratio,
+    triangles: () => renderer.info.render.triangles,
     onRender: (f) => { beforeRender = f; },
   };
 }
