@@ -148,11 +148,25 @@ const Tables = (() => {
     while (list.children.length > MAX_EVENTS) list.lastChild.remove();
   }
 
-  function show(instant) {
+  function write(instant) {
     instant.frame.robots.forEach((robot, i) => showRobot(robot, i, instant.robots[i]));
     showDistances(instant.frame);
     showRegions([...instant.regions, ...instant.added]);
     showSlots(instant.frame.slots);
+  }
+
+  // Numbers that change with every picture cannot be read, and new text costs the browser as much as the poses of the robots.
+  const PERIOD_MS = 100;
+  let newest = null, written = -Infinity, waiting = 0;
+  function writeNewest() {
+    waiting = 0;
+    written = performance.now();
+    write(newest);
+  }
+  function show(instant) {
+    newest = instant;
+    const wait = written + PERIOD_MS - performance.now();
+    if (wait <= 0) { clearTimeout(waiting); writeNewest(); } else waiting ||= setTimeout(writeNewest, wait);
   }
 
   return { show, addEvents, events: () => events };
