@@ -125,7 +125,7 @@ const Surfaces = (() => {
 
   // Coarser surfaces are not worth it for fewer triangles, nor if they have not fewer than a share of them, nor good enough if
   // they have not a share of the area: a thin rod would vanish.
-  const FEW = 100, FEWER = 0.8, KEPT = 0.6, FINEST_M = 1e-3;
+  const FEW = 100, FEWER = 0.8, KEPT = 0.6, FINEST_M = 1e-3, COARSEST = 12;
 
   // Geometries of a mesh, from which `at` chooses by the size of details that are not seen, m.
   function levels(mesh) {
@@ -137,7 +137,7 @@ const Surfaces = (() => {
       return area(coarse) < KEPT * size ? from(level - 1) : coarse;
     }
     const from = (level) => (level >= 0 ? (made[level] ||= make(level)) : fine);
-    const at = (unseen) => (triangles(fine) < FEW ? fine : from(Math.round(Math.log2(unseen / FINEST_M))));
+    const at = (unseen) => (triangles(fine) < FEW ? fine : from(Math.min(COARSEST, Math.round(Math.log2(unseen / FINEST_M)))));
     fine.computeBoundingBox();
     fine.computeBoundingSphere();
     return { fine, at, isClosed: isClosed(mesh), center: fine.boundingSphere.center, radius: fine.boundingSphere.radius };
@@ -150,7 +150,9 @@ const Surfaces = (() => {
     uniform vec3 diffuse;
     uniform vec3 emissive;
     varying vec3 front;
-    varying vec3 back;
+    #ifdef DOUBLE_SIDED
+      varying vec3 back;
+    #endif
     vec3 lit(vec3 normal) {
       vec3 light = directionalLights[0].color * saturate(dot(normal, directionalLights[0].direction));
       light += getHemisphereLightIrradiance(hemisphereLights[0], normal);
@@ -160,14 +162,20 @@ const Surfaces = (() => {
     void main() {
       vec3 turned = normalize(normalMatrix * normal);
       front = lit(turned);
-      back = lit(-turned);
+      #ifdef DOUBLE_SIDED
+        back = lit(-turned);
+      #endif
       gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
     }`;
   const FRAGMENT = `
     uniform float opacity;
     varying vec3 front;
-    varying vec3 back;
-    void main() { gl_FragColor = vec4(gl_FrontFacing ? front : back, opacity); }`;
+    #ifdef DOUBLE_SIDED
+      varying vec3 back;
+      void main() { gl_FragColor = vec4(gl_FrontFacing ? front : back, opacity); }
+    #else
+      void main() { gl_FragColor = vec4(front, opacity); }
+    #endif`;
   function perCorner(look) {
     const material = new THREE.MeshLambertMaterial(look);
     material.onBeforeCompile = (shader) => Object.assign(shader, { vertexShader: VERTEX, fragmentShader: FRAGMENT });
