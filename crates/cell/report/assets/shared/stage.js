@@ -303,7 +303,7 @@ function createStage(corners, lineCount) {
 
   // While a picture takes longer than at 30 per second, surfaces are drawn simpler, then pixels larger; finer ones are tried when
   // pictures have been quick for long, each time later. When the scene rests, pixels are as fine as the screen's.
-  const COARSEST = 0.5, SLOW_MS = 33.5, QUICK_MS = 25, COUNTED = 15, REST_MS = 500;
+  const COARSEST = 0.5, SLOW_MS = 33.5, QUICK_MS = 25, LONGEST_MS = 100, COUNTED = 15, REST_MS = 500;
   const finest = () => Math.min(2, window.devicePixelRatio || 1);
   let ratio = finest(), counted = 0, total = 0, quick = 0, patience = 4, resting = 0;
   function setRatio(to) {
@@ -333,7 +333,8 @@ function createStage(corners, lineCount) {
     const begin = performance.now();
     requestAnimationFrame(() => {
       counted += 1;
-      total += performance.now() - begin;
+      // A page in the background gets no pictures: one of them says little.
+      total += Math.min(LONGEST_MS, performance.now() - begin);
       if (counted < COUNTED) return;
       decide(total / counted);
       counted = 0;
