@@ -75,6 +75,12 @@ const RUNS: [Run; 17] = [
         env: &[("ELBOWROOM_SCHEDULES", "100000")],
     },
     Run {
+        name: "service",
+        what: "100,000 random schedules of a whole service in simulated time: faults, requests, changes of regions",
+        words: &["test", "--release", "-p", "elbowroom-live", "--lib", "simulated_service::", "--", "--nocapture"],
+        env: &[("ELBOWROOM_SCHEDULES", "100000")],
+    },
+    Run {
         name: "model",
         what: "the states of the interlock's protocol, half an hour per cell",
         words: &["test", "--release", "-p", "elbowroom-interlock", "--lib", "model::", "--", "--nocapture"],

@@ -34,6 +34,8 @@ use crate::locked::locked;
 
 /// Number of findings after which no further schedule begins.
 const ENOUGH: usize = 10;
+/// Number of schedules between two lines of progress.
+const PROGRESS: u64 = 1_000;
 /// Length of a schedule.
 const LENGTH_US: u64 = 5_000_000;
 
@@ -96,6 +98,9 @@ fn run(seeds: &Range<u64>) -> Outcome {
             }
             let outcome = schedule(&cells, seed);
             locked(&all).add(seed, outcome);
+            if seed % PROGRESS == PROGRESS - 1 {
+                eprintln!("{} schedules, {} findings", seed + 1 - seeds.start, locked(&all).findings.wrong.len());
+            }
         }
     };
     std::thread::scope(|scope| {

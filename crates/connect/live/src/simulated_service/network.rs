@@ -138,16 +138,24 @@ impl Wires {
         }
     }
 
-    /// A stranger repeats a message that it has seen, perhaps with a changed byte, under the same key.
+    /// A stranger repeats a message that it has seen, whole or cut short, or sends any bytes, under a key of the cell.
     pub(super) fn repeat_a_message(&mut self, stranger: Host) {
         if self.seen.is_empty() {
             return;
         }
         let (key, bytes) = self.seen[self.random.below(self.seen.len())].clone();
         let mut changed = bytes.to_vec();
-        if self.random.unit() < 0.5 && !changed.is_empty() {
-            let at = self.random.below(changed.len());
-            changed.truncate(at);
+        match self.random.below(3) {
+            0 => {
+                let at = self.random.below(changed.len() + 1);
+                changed.truncate(at);
+            }
+            1 => {
+                for byte in &mut changed {
+                    *byte = self.random.bits() as u8;
+                }
+            }
+            _ => {}
         }
         self.carry(stranger, &key, &changed.into());
     }
