@@ -231,8 +231,8 @@ impl RegionKeeper {
     /// Replaces the regions.
     ///
     /// Existing regions keep their on or off state; new temporary ones get `new_are_on`, permanent ones are on. Until
-    /// it is called with `is_due`, nodes may continue with the previous regions.
-    pub(crate) fn set(&self, regions: &PresentRegions, new_are_on: bool, is_due: bool) {
+    /// it is called with `is_due`, nodes may continue with the previous regions. Returns the revision of the table.
+    pub(crate) fn set(&self, regions: &PresentRegions, new_are_on: bool, is_due: bool) -> (u64, u64) {
         let mut kept = locked(&self.kept);
         let PresentRegions { cell, edits } = regions;
         let was_on = |name: &str| {
@@ -248,10 +248,12 @@ impl RegionKeeper {
         let former = std::mem::replace(&mut table.present, configuration_digits(cell));
         table.former = if is_due { String::new() } else { former };
         table.revision.1 += 1;
+        let revision = table.revision;
         kept.cell = cell.clone();
         kept.record();
         drop(kept);
         self.publish();
+        revision
     }
 
     fn publish(&self) {

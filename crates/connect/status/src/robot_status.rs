@@ -54,6 +54,9 @@ pub struct ServiceStatus {
     /// configuration.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub configuration: String,
+    /// Start of the keeper and revision of the table of regions that the tick has used; zeros before the first table.
+    #[serde(default)]
+    pub table: (u64, u64),
     /// Health of the service.
     pub health: HealthStatus,
     /// Events since the status before.

@@ -25,11 +25,15 @@ const POLL: Duration = Duration::from_millis(5);
 struct Running {
     #[serde(default)]
     configuration: String,
+    #[serde(default)]
+    table: (u64, u64),
 }
 
 #[derive(Debug, Clone, Default)]
 struct Heard {
     configuration: String,
+    /// The table of regions that the node had.
+    table: (u64, u64),
     /// Time of the last status; before the first, the start of this process, as the node may have run before it.
     at: Micros,
 }
@@ -49,8 +53,8 @@ impl NodesHeard {
         let subscribe = |(i, robot): (usize, &elbowroom_cell::CellRobot)| {
             let heard = heard.clone();
             let handler = Box::new(move |bytes: &[u8]| {
-                let Ok(Running { configuration }) = serde_json::from_slice(bytes) else { return };
-                locked(&heard)[i] = Heard { configuration, at: clock.micros() };
+                let Ok(Running { configuration, table }) = serde_json::from_slice(bytes) else { return };
+                locked(&heard)[i] = Heard { configuration, table, at: clock.micros() };
             });
             network.subscribe(&keys.status(&robot.name), handler)
         };
@@ -58,15 +62,16 @@ impl NodesHeard {
         Ok(Self { heard, clock, _subscriptions: subscriptions })
     }
 
-    /// Waits until all running nodes have this configuration: the first digits of its checksum, or empty for the cell
-    /// file's configuration. Returns the indices of robots whose nodes still run with another one.
-    pub(crate) fn wait_for(&self, configuration: &str) -> Vec<usize> {
+    /// Waits until all running nodes have this configuration (the first digits of its checksum, or empty for the cell
+    /// file's configuration) and have received this table, or a later one: a status that was sent before may be late, and
+    /// of an earlier time with the same regions. Returns the indices of robots whose nodes still run without it.
+    pub(crate) fn wait_for(&self, configuration: &str, table: (u64, u64)) -> Vec<usize> {
         let since = self.clock.micros();
         loop {
             let now = self.clock.micros();
             let heard = locked(&self.heard).clone();
             let is_missing = |h: &Heard| {
-                let has_it = h.at > since && h.configuration == configuration;
+                let has_it = h.table >= table && h.configuration == configuration;
                 !has_it && now - h.at <= SILENT
             };
             let missing: Vec<usize> = (0..heard.len()).filter(|r| is_missing(&heard[*r])).collect();

@@ -203,8 +203,8 @@ impl RequestHandler {
         let ControlParts { keeper, nodes, versions, .. } = &self.parts;
         let is_base = Arc::ptr_eq(&regions.cell, versions.base());
         let number = if is_base { String::new() } else { configuration_digits(&regions.cell) };
-        keeper.set(regions, new_are_on, false);
-        let missing = nodes.wait_for(&number);
+        let table = keeper.set(regions, new_are_on, false);
+        let missing = nodes.wait_for(&number, table);
         keeper.set(regions, new_are_on, true);
         missing.into_iter().map(|robot| regions.cell.robots[robot].name.clone()).collect()
     }

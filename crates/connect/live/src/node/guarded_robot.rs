@@ -34,6 +34,8 @@ pub(super) struct GuardedRobot {
     attached: AttachedVolumes,
     /// Whether each region of the cell is on.
     active: Vec<bool>,
+    /// Revision of the table of regions that was received last.
+    pub(super) table: (u64, u64),
     /// Whether the robot stops until it has received a table of regions.
     pub(super) awaits_regions: bool,
     /// Fault in the input.
@@ -99,6 +101,7 @@ impl GuardedRobot {
             attached: AttachedVolumes::new(&setup.configuration),
             doubt: None,
             active: RegionTable::initial(&cell).active,
+            table: (0, 0),
             awaits_regions: false,
             version: Arc::new(NodeVersion { number: String::new(), configuration: setup.configuration.clone() }),
             answers: 0,
@@ -139,6 +142,7 @@ impl GuardedRobot {
             self.replace(&mut next, inbox);
             inbox.left_over = Some(next);
         }
+        self.table = inbox.regions.revision;
         let is_known = inbox.regions_heard.is_some_and(|heard| now - heard <= TABLE_VALIDITY);
         if is_known {
             self.active.copy_from_slice(&inbox.regions.active);

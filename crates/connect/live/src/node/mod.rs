@@ -242,8 +242,8 @@ impl Sender {
             }
             std::mem::swap(&mut self.state, &mut outgoing.state);
             let sample = outgoing.take_sample(&mut self.sample);
-            let doubt = outgoing.doubt;
-            (outgoing.answer.take(), sample.map(|sample| (sample, outgoing.version.clone(), doubt)))
+            let (doubt, table) = (outgoing.doubt, outgoing.table);
+            (outgoing.answer.take(), sample.map(|sample| (sample, (outgoing.version.clone(), table), doubt)))
         };
         if let Some(answer) = answer {
             answer.encode(&mut self.bytes);
@@ -263,7 +263,7 @@ impl Sender {
         t_s: f64,
         sequence: u64,
         health: HealthStatus,
-        version: &NodeVersion,
+        (version, table): &(Arc<NodeVersion>, (u64, u64)),
         doubt: Option<Doubt>,
     ) {
         let tcp = self.tcp(&version.configuration);
@@ -276,7 +276,7 @@ impl Sender {
             status.reason = format!("{}: {doubt}", status.reason);
         }
         let events = self.events(t_s, &version.configuration);
-        status.service = ServiceStatus { configuration: version.number.clone(), health, events };
+        status.service = ServiceStatus { configuration: version.number.clone(), table: *table, health, events };
         if let Ok(json) = serde_json::to_vec(&status) {
             self.statuses.publish(&json);
         }

@@ -31,6 +31,8 @@ pub(super) struct Outgoing {
     pub(super) version: Arc<NodeVersion>,
     pub(super) t_s: f64,
     pub(super) sequence: u64,
+    /// Revision of the table of regions of that tick.
+    pub(super) table: (u64, u64),
     pub(super) health: HealthStatus,
     /// Fault in the input of the node.
     pub(super) doubt: Option<Doubt>,
@@ -62,6 +64,7 @@ impl Outbox {
             version,
             t_s: 0.0,
             sequence: 0,
+            table: (0, 0),
             health: HealthStatus::default(),
             doubt: None,
             is_closed: false,

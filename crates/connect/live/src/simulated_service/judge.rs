@@ -1,6 +1,8 @@
 //! Judge of a schedule: knows the true places of the carriages, and what people were told; shares no distances or laws with
 //! the service.
 
+use std::collections::BTreeMap;
+
 use super::cell::{
     APART_M, CARRIAGE_M, CART_AT_M, CART_M, EXCHANGE_AT_M, EXCHANGE_M, FOLLOWING_M, Follows, WALL_AT_M, WALL_M, belt,
     sharing,
@@ -57,6 +59,10 @@ pub(super) struct Judge {
     before_carried: f64,
     /// Regions that were added or moved, with their places.
     pub(super) zones: Vec<Zone>,
+    /// The region that people ask to be moved, and whether a carriage has entered its place since.
+    moving: Option<(String, bool)>,
+    /// Their places before the last move.
+    former: BTreeMap<String, (f64, f64)>,
     /// True time since which the switched region is on in the table; `None` while it is off or unknown.
     pub(super) cart_on_since_us: Option<u64>,
     inside: Vec<Option<usize>>,
@@ -70,6 +76,8 @@ impl Judge {
             before: places.to_vec(),
             before_carried: 0.0,
             zones: Vec::new(),
+            moving: None,
+            former: BTreeMap::new(),
             cart_on_since_us: None,
             inside: vec![None; places.len()],
         }
@@ -126,6 +134,10 @@ impl Judge {
             let (distance, before) = (zone.distance(rail, places[rail]), zone.distance(rail, self.before[rail]));
             let is_excused = zone.named.contains(&rail) && true_us() - zone.since_us < NAMED_US;
             if distance < -INSIDE_M && before >= -INSIDE_M && !is_excused {
+                if self.moving.as_ref().is_some_and(|(name, _)| *name == zone.name) {
+                    self.moving = Some((zone.name.clone(), true));
+                    continue;
+                }
                 self.wrong(&format!(
                     "r{rail} enters {} at {:.3} m with {:.3} m/s",
                     zone.name, places[rail], velocities[rail]
@@ -155,12 +167,32 @@ impl Judge {
         self.before_carried = z;
     }
 
+    /// People ask for a region to be moved: if that is done, the place where it was may be free before they are told.
+    pub(super) fn begin_move(&mut self, name: &str) {
+        self.moving = Some((name.to_owned(), false));
+    }
+
+    /// The request to move a region has ended.
+    pub(super) fn end_move(&mut self, is_refused: bool) {
+        if let Some((name, true)) = self.moving.take().filter(|_| is_refused) {
+            self.wrong(&format!("a carriage enters {name}, which was not moved"));
+        }
+    }
+
+    /// Where a region was before it was moved.
+    pub(super) fn former(&self, name: &str) -> Option<(f64, f64)> {
+        self.former.get(name).copied()
+    }
+
     /// A change of a region has been answered: it is in force from now on.
     pub(super) fn in_force(&mut self, zone: Zone, places: &[f64]) {
         for rail in (0..places.len()).filter(|rail| !zone.named.contains(rail)) {
             if zone.distance(rail, places[rail]) < -INSIDE_M {
                 self.wrong(&format!("r{rail} is inside {} when the answer says that it is in force", zone.name));
             }
+        }
+        if let Some(before) = self.zones.iter().find(|other| other.name == zone.name) {
+            self.former.insert(zone.name.clone(), (before.x, before.z));
         }
         self.zones.retain(|other| other.name != zone.name);
         self.zones.push(zone);

@@ -65,11 +65,16 @@ impl World {
         else {
             return;
         };
-        let place = Place { radius, ..self.place() };
+        let returns = self.random.borrow_mut().below(3) == 0;
+        let former = self.judge.borrow().former(&name).filter(|_| returns);
+        let place = former.map_or_else(|| self.place(), |(x, z)| Place { x, z, radius });
+        let place = Place { radius, ..place };
         let toml = format!("centre = [{}, 0, {}]", place.x, place.z);
         let request = Move { region: name.clone(), toml, note: None };
+        self.judge.borrow_mut().begin_move(&name);
         let answer =
             self.send("move", |parts, at| parts.handler.move_region(&self.cell.tokens[PROGRAMMER], at, &request));
+        self.judge.borrow_mut().end_move(matches!(answer, Some(Err(_))));
         match answer {
             Some(Ok(done)) => self.promise(&done, name, place),
             // The region is still where it was.
