@@ -60,6 +60,7 @@ pub(super) enum Fault {
 
 /// The faults that are to come, in order of time.
 pub(super) struct FaultPlan {
+    has_faults: bool,
     faults: VecDeque<(u64, Fault)>,
     /// Per host, true time until which something disturbs it.
     disturbed_until_us: BTreeMap<Host, u64>,
@@ -67,7 +68,7 @@ pub(super) struct FaultPlan {
 }
 
 impl FaultPlan {
-    /// Draws faults; a quarter of the schedules has none.
+    /// Draws faults; a third of the schedules has none.
     pub(super) fn new(rails: usize, length_us: u64, random: &mut SplitMix) -> Self {
         let mut faults = Vec::new();
         let count = if random.below(4) == 0 { 0 } else { random.below(8) };
@@ -76,7 +77,26 @@ impl FaultPlan {
             faults.push((at_us, draw(rails, random)));
         }
         faults.sort_by_key(|(at, _)| *at);
-        Self { faults: faults.into(), disturbed_until_us: BTreeMap::new(), counts: BTreeMap::new() }
+        Self {
+            has_faults: count > 0,
+            faults: faults.into(),
+            disturbed_until_us: BTreeMap::new(),
+            counts: BTreeMap::new(),
+        }
+    }
+
+    /// A fault for the moment of a request, in some cases.
+    pub(super) fn beside_a_request(&self, rails: usize, random: &mut SplitMix) -> Option<Fault> {
+        let host = node_host(random.below(rails));
+        let for_us = 50_000 + random.bits() % 2_500_000;
+        match random.below(16) {
+            0 => Some(Fault::Cut { from: ARBITER, to: host, for_us }),
+            1 => Some(Fault::Cut { from: host, to: ARBITER, for_us }),
+            2 => Some(Fault::Pause { host, for_us: for_us / 4 }),
+            3 => Some(Fault::Late { from: ARBITER, to: host, for_us, late_us: for_us / 3 }),
+            _ => None,
+        }
+        .filter(|_| self.has_faults)
     }
 
     pub(super) fn take_due(&mut self, now_us: u64) -> Vec<Fault> {

@@ -28,15 +28,23 @@ impl World {
     fn place(&self) -> Place {
         let mut random = self.random.borrow_mut();
         let rail = random.below(self.cell.rails);
+        // Half of them are where the carriage goes.
+        let (q, target) = (self.places()[rail], self.targets()[rail]);
+        let ahead = q + (target - q).signum() * (0.1 + 0.5 * random.unit());
         Place {
             x: APART_M * rail as f64 + 0.2 * (random.unit() - 0.5),
-            z: RAIL_M * random.unit(),
+            z: if random.below(2) == 0 { RAIL_M * random.unit() } else { ahead },
             radius: 0.02 + 0.1 * random.unit(),
         }
     }
 
     /// A person or a program asks for something.
     pub(super) fn ask(&self) {
+        // A fault that comes with a request is the one that matters.
+        let fault = self.plan().beside_a_request(self.cell.rails, &mut self.random.borrow_mut());
+        if let Some(fault) = fault {
+            self.apply(fault);
+        }
         let draw = self.random.borrow_mut().below(10);
         let edited: Vec<String> = self.judge.borrow().zones.iter().map(|zone| zone.name.clone()).collect();
         match draw {

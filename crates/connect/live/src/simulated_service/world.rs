@@ -233,9 +233,9 @@ impl World {
             if running.runs() {
                 return;
             }
-            let until_us = running.paused_until_us;
             drop(processes);
-            self.advance(until_us);
+            // In steps, as the process may end while it pauses, and start again.
+            self.advance(true_us() + 1_000);
         }
     }
 
