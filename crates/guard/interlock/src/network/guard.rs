@@ -288,6 +288,39 @@ impl Guard {
         &mut self.serial
     }
 
+    /// Reads or writes the fields that steps change.
+    pub(crate) fn code(&mut self, codec: &mut super::model::codec::Codec) {
+        codec.boot(&mut self.boot);
+        codec.number(&mut self.sequence);
+        let sent = self.sequence as usize + 1;
+        self.sent[sent..].fill(Micros(0));
+        self.sent[..sent].iter_mut().for_each(|time| codec.time(time));
+        codec.boot(&mut self.arbiter);
+        codec.number(&mut self.serial);
+        for slot in &mut self.slots {
+            codec.occupancy(&mut slot.occupancy);
+            codec.token(&mut slot.token);
+            codec.token(&mut slot.released);
+            codec.option(&mut slot.confirmed, Micros(0), super::model::codec::Codec::time);
+            codec.flag(&mut slot.orders.release_requested);
+            codec.flag(&mut slot.orders.halt);
+            codec.flag(&mut slot.is_closing);
+        }
+    }
+
+    pub(crate) fn boot_mut(&mut self) -> &mut Boot {
+        &mut self.boot
+    }
+
+    pub(crate) fn arbiter_mut(&mut self) -> &mut Boot {
+        &mut self.arbiter
+    }
+
+    /// Sets whether the guard is asked to give up its grants, and forgets other orders.
+    pub(crate) fn ask(&mut self, release_requested: bool) {
+        self.slots.iter_mut().for_each(|slot| slot.orders = Orders { release_requested, halt: false });
+    }
+
     pub(crate) fn set_robot(&mut self, robot: RobotSlot) {
         self.robot = robot;
     }

@@ -31,6 +31,64 @@ impl Arbiter {
         Some((holder.robot, holder.token.as_mut()?))
     }
 
+    /// Reads or writes the fields that steps change.
+    pub(crate) fn code(&mut self, codec: &mut super::super::model::codec::Codec) {
+        codec.boot(&mut self.boot);
+        codec.option(&mut self.started, Micros(0), super::super::model::codec::Codec::time);
+        codec.number(&mut self.serial);
+        codec.number(&mut self.tokens);
+        for robot in &mut self.robots {
+            codec.boot(&mut robot.boot);
+            codec.number(&mut robot.sequence);
+            codec.option(&mut robot.heard, Micros(0), super::super::model::codec::Codec::time);
+            codec.flag(&mut robot.is_trusted);
+            codec.flag(&mut robot.is_cleared);
+            robot.reports.iter_mut().for_each(|report| codec.report(report));
+        }
+        for slot in &mut self.slots {
+            codec.option(&mut slot.holder, Holder { robot: RobotSlot(0), token: None }, |codec, holder| {
+                codec.index(&mut holder.robot.0);
+                codec.token(&mut holder.token);
+            });
+            codec.robots(&mut slot.queue);
+            codec.robots(&mut slot.intruders);
+            codec.flag(&mut slot.release_requested);
+        }
+        self.deadlocks.clear();
+    }
+
+    pub(crate) fn boot_mut(&mut self) -> &mut Boot {
+        &mut self.boot
+    }
+
+    pub(crate) fn guard_boot_mut(&mut self, robot: RobotSlot) -> &mut Boot {
+        &mut self.robots[robot.0].boot
+    }
+
+    /// Makes this robot the only one that waits, for every slot.
+    pub(crate) fn set_waiting(&mut self, waiting: Option<RobotSlot>) {
+        self.slots.iter_mut().for_each(|slot| slot.queue = waiting.into_iter().collect());
+    }
+
+    /// Makes a robot known to be outside without a grant, or unknown. The next message of start 1 is not late.
+    pub(crate) fn set_known(&mut self, robot: RobotSlot, is_known: bool, now: Micros) {
+        let slots = self.slots.len();
+        let report = SlotReport { occupancy: Occupancy::Outside, ..SlotReport::UNKNOWN };
+        let reports = vec![if is_known { report } else { SlotReport::UNKNOWN }; slots];
+        let (boot, heard) = (Boot(1), Some(now));
+        self.robots[robot.0] = RobotRecord { boot, heard, is_trusted: is_known, reports, ..RobotRecord::new(slots) };
+    }
+
+    /// Forgets which grants a robot holds, but not that it holds slots; and for all robots, what waits and what halts.
+    pub(crate) fn forget_grants_and_orders(&mut self, robot: RobotSlot) {
+        for slot in &mut self.slots {
+            slot.holder.iter_mut().filter(|holder| holder.robot == robot).for_each(|holder| holder.token = None);
+            slot.queue.clear();
+            slot.intruders.clear();
+            slot.release_requested = false;
+        }
+    }
+
     pub(crate) fn sequence_mut(&mut self, robot: RobotSlot) -> &mut u64 {
         &mut self.robots[robot.0].sequence
     }
@@ -46,9 +104,10 @@ impl Arbiter {
         message.arbiter <= self.boot && message.boot == record.boot && message.sequence <= record.sequence
     }
 
-    /// Gives robot `r` the index `to[r]`.
+    /// Gives robot `r` the index `to[r]`. Later robots keep their index.
     pub(crate) fn reindex(&mut self, to: &[usize]) {
-        super::super::model::renaming::permute(&mut self.robots, to);
+        let to: Vec<usize> = to.iter().copied().chain(to.len()..self.robots.len()).collect();
+        super::super::model::renaming::permute(&mut self.robots, &to);
         let map = |robot: &mut RobotSlot| *robot = RobotSlot(to[robot.0]);
         for slot in &mut self.slots {
             slot.holder.iter_mut().for_each(|holder| map(&mut holder.robot));

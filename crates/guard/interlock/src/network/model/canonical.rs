@@ -14,6 +14,11 @@ const TOKENS: u64 = 100;
 /// First number of held grants, above the numbers of all other grants.
 const HELD: u64 = 50;
 
+/// Distance of the numbers of starts, so that a process whose clock was set back finds a number between any two.
+const SPACING: u64 = 4;
+/// Distance of such a number from the next one. The number after a start is another one.
+pub(super) const BELOW: u64 = 2;
+
 /// Lets time pass: makes all stored times older.
 pub(super) fn pass(state: &mut CellState, step: Micros) {
     each_time(state, |time| *time = *time - step);
@@ -30,7 +35,11 @@ pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usi
         forget_past_releases(state, robot);
         rank_sequences(state, robot);
         rank_serials(state, robot);
+        let starts = guard_starts(state, robot);
+        each_guard_start(state, robot, &mut |boot| *boot = rank_start(*boot, &starts));
     }
+    let starts = arbiter_starts(state);
+    each_arbiter_start(state, &mut |boot| *boot = rank_start(*boot, &starts));
     let mut held: Vec<Token> = state.slots().filter_map(|slot| held_token(state, slot)).collect();
     held.sort_unstable();
     for slot in state.slots() {
@@ -38,6 +47,46 @@ pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usi
     }
     state.arbiter.set_counters(SERIAL, TOKENS);
     sort_robots(state, classes);
+}
+
+/// Replaces the number of a start by its rank: starts of one role are only compared with each other.
+fn rank_start(boot: Boot, starts: &[Boot]) -> Boot {
+    Boot(starts.binary_search(&boot).map_or(0, |rank| (rank as u64 + 1) * SPACING))
+}
+
+fn starts_of(visit: impl FnOnce(&mut dyn FnMut(&mut Boot))) -> Vec<Boot> {
+    let mut starts = Vec::new();
+    visit(&mut |boot| starts.extend((*boot != Boot::NONE).then_some(*boot)));
+    starts.sort_unstable();
+    starts.dedup();
+    starts
+}
+
+/// The starts of a robot's guard that are remembered anywhere, in rising order.
+pub(super) fn guard_starts(state: &mut CellState, robot: RobotSlot) -> Vec<Boot> {
+    starts_of(|f| each_guard_start(state, robot, f))
+}
+
+/// The starts of the arbiter that are remembered anywhere, in rising order.
+pub(super) fn arbiter_starts(state: &mut CellState) -> Vec<Boot> {
+    starts_of(|f| each_arbiter_start(state, f))
+}
+
+fn each_guard_start(state: &mut CellState, robot: RobotSlot, f: &mut dyn FnMut(&mut Boot)) {
+    f(state.guards[robot.0].boot_mut());
+    f(state.arbiter.guard_boot_mut(robot));
+    state.to_arbiter[robot.0].iter_mut().for_each(|m| f(&mut m.boot));
+    state.to_guard[robot.0].iter_mut().for_each(|m| f(&mut m.robot_boot));
+}
+
+fn each_arbiter_start(state: &mut CellState, f: &mut dyn FnMut(&mut Boot)) {
+    f(state.arbiter.boot_mut());
+    state.guards.iter_mut().for_each(|guard| f(guard.arbiter_mut()));
+    state.to_arbiter.iter_mut().flatten().for_each(|m| f(&mut m.arbiter));
+    state.to_guard.iter_mut().flatten().for_each(|m| f(&mut m.arbiter));
+    for slot in state.slots() {
+        each_token(state, slot, &mut |token| f(&mut token.boot));
+    }
 }
 
 /// Sorts the robots of each class by their states. Robots with equal keys do not differ.

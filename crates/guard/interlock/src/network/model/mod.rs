@@ -9,6 +9,9 @@
 
 mod canonical;
 mod checks;
+pub(crate) mod codec;
+mod explorer;
+mod free;
 mod programs;
 pub(crate) mod renaming;
 mod state;
@@ -18,6 +21,7 @@ use stateright::{Model, Property};
 use crate::{
     Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotSettings, RobotSlot, SlotId, StateMessage, Token,
 };
+use free::Next;
 use programs::Program;
 use state::{CellState, FaultBudget, NOW, RobotState};
 
@@ -80,6 +84,10 @@ struct CellModel {
     planted: PlantedFault,
     /// Robots of the same class have the same program.
     classes: Vec<usize>,
+    /// True if the cell has any number of other robots and slots ([`free`]).
+    is_free: bool,
+    /// True if a process may start with a lower number than the former one.
+    is_set_back: bool,
 }
 
 /// What a robot does in a tick.
@@ -98,14 +106,18 @@ enum Action {
     Tick(RobotSlot, Step),
     /// The guard sends a message.
     Send(RobotSlot),
+    /// The guard sends a message after it was asked to give up its grants.
+    SendAsked(RobotSlot),
     /// The arbiter receives a message, which may be delivered again.
-    ToArbiter(RobotSlot, usize),
+    ToArbiter(RobotSlot, usize, Next),
     ToGuard(RobotSlot, usize),
     TimePasses,
-    CrashGuard(RobotSlot),
-    CrashArbiter,
-    Clear(RobotSlot),
+    CrashGuard(RobotSlot, Boot),
+    CrashArbiter(Boot),
+    Clear(RobotSlot, Next),
     TakeBack(SlotId),
+    /// The arbiter receives a message of a robot beyond the model.
+    Other(free::Report, Next),
 }
 
 impl CellModel {
@@ -115,7 +127,8 @@ impl CellModel {
         let programs: Vec<_> = programs.iter().map(|words| Program::new(words)).collect();
         let slots = programs[0].slots();
         let (clock, faults, planted) = (Clock::Coarse, FaultBudget::default(), PlantedFault::None);
-        Self { programs, slots, under_way: 1, clock, faults, planted, classes }
+        let (is_free, is_set_back) = (false, false);
+        Self { programs, slots, under_way: 1, clock, faults, planted, classes, is_free, is_set_back }
     }
 
     fn slots(&self) -> impl Iterator<Item = SlotId> + use<> {
@@ -132,7 +145,8 @@ impl CellModel {
             let slots = self.slots().filter(|s| program.uses(*s));
             RobotSettings { stop_time, ..RobotSettings::new("robot", slots) }
         };
-        let robots = self.programs.iter().map(robot).collect();
+        let other = self.is_free.then(|| &self.programs[0]);
+        let robots = self.programs.iter().chain(other).map(robot).collect();
         ArbiterSettings { silence, validity, ..ArbiterSettings::new(robots, self.slots) }
     }
 
@@ -150,6 +164,14 @@ impl CellModel {
     fn is_in(&self, state: &CellState, robot: RobotSlot, slot: SlotId) -> bool {
         let RobotState { place, enters } = state.robots[robot.0];
         self.occupies(robot, place, slot) || enters && self.occupies(robot, self.programs[robot.0].next(place), slot)
+    }
+
+    /// Whether at most one robot is in each slot or may enter it.
+    fn is_exclusive(&self, state: &CellState) -> bool {
+        self.slots().all(|slot| {
+            let claims = |r: &RobotSlot| self.is_in(state, *r, slot) || state.guards[r.0].may_enter(slot, NOW);
+            self.robots().filter(claims).count() <= 1
+        })
     }
 
     /// The slots that the robot must be granted to move on from a place.
@@ -191,7 +213,7 @@ impl CellModel {
     }
 
     fn reply(&self, state: &mut CellState, replies: Vec<GrantsMessage>) {
-        for reply in replies {
+        for reply in replies.into_iter().filter(|reply| reply.robot.0 < self.programs.len()) {
             self.push(&mut state.to_guard[reply.robot.0], reply);
         }
     }
@@ -206,6 +228,7 @@ impl CellModel {
     /// Makes all robots, which are outside, known to the arbiter.
     fn know_each_other(&self, state: &mut CellState) {
         for r in (0..2).flat_map(|_| self.robots()) {
+            self.choose(state, Next::Undecided);
             self.tick(state, r, Step::Remain);
             let message = state.guards[r.0].state(NOW);
             for reply in state.arbiter.receive(&message, NOW).replies {
@@ -219,7 +242,7 @@ impl CellModel {
         if self.slots().any(|slot| self.is_in(state, robot, slot)) {
             return None;
         }
-        state.faults.clears -= 1;
+        FaultBudget::spend(&mut state.faults.clears);
         let outputs = if self.planted == PlantedFault::HastyClear {
             state.arbiter.clear_at_once(robot, NOW)
         } else {
@@ -229,8 +252,12 @@ impl CellModel {
         Some(())
     }
 
-    fn to_arbiter(&self, state: &mut CellState, robot: RobotSlot, index: usize) {
+    fn to_arbiter(&self, state: &mut CellState, robot: RobotSlot, index: usize, next: Next) {
         let mut message = state.to_arbiter[robot.0][index].clone();
+        self.choose(state, next);
+        if self.is_free {
+            message.slots.iter_mut().for_each(|report| report.wants = next == Next::Robot(robot));
+        }
         if self.planted == PlantedFault::TokensUnchecked {
             give_up_all(&mut message);
         }
@@ -238,26 +265,50 @@ impl CellModel {
         self.reply(state, outputs.replies);
     }
 
+    /// The numbers of a new process of which the former ones had these, in rising order: above them, and if clocks may
+    /// be set back also between and below them.
+    fn new_starts(&self, starts: &[Boot]) -> impl Iterator<Item = Boot> {
+        let back = if self.is_set_back { starts } else { &[] };
+        let last = starts.last().copied().unwrap_or(Boot::NONE);
+        let between: Vec<Boot> = back.iter().map(|boot| Boot(boot.0 - canonical::BELOW)).chain([last.next()]).collect();
+        between.into_iter()
+    }
+
+    fn simplify(&self, state: &mut CellState) {
+        if self.is_free {
+            free::forget(state);
+        }
+        canonical::canonicalize(state, self.clock.oldest(), &self.classes);
+    }
+
     /// Applies an action to the state; `None` if the action is impossible.
     fn act(&self, state: &mut CellState, action: Action) -> Option<()> {
         match action {
             Action::Tick(r, step) => self.tick(state, r, step)?,
             Action::Send(r) => self.send(state, r),
-            Action::ToArbiter(r, i) => self.to_arbiter(state, r, i),
+            Action::SendAsked(r) => {
+                state.guards[r.0].ask(true);
+                self.send(state, r);
+            }
+            Action::ToArbiter(r, i, next) => self.to_arbiter(state, r, i, next),
             Action::ToGuard(r, i) => {
                 let message = state.to_guard[r.0][i].clone();
                 let _ = state.guards[r.0].receive(&message);
             }
             Action::TimePasses => canonical::pass(state, STEP),
-            Action::CrashGuard(r) => {
-                state.faults.guard_crashes -= 1;
-                state.guards[r.0] = self.guard(r, state.guards[r.0].boot().next());
+            Action::CrashGuard(r, boot) => {
+                FaultBudget::spend(&mut state.faults.guard_crashes);
+                state.guards[r.0] = self.guard(r, boot);
             }
-            Action::CrashArbiter => {
-                state.faults.arbiter_crashes -= 1;
-                state.arbiter = Arbiter::new(self.settings(), state.arbiter.boot().next());
+            Action::CrashArbiter(boot) => {
+                FaultBudget::spend(&mut state.faults.arbiter_crashes);
+                state.arbiter = Arbiter::new(self.settings(), boot);
             }
-            Action::Clear(r) => self.clear(state, r)?,
+            Action::Clear(r, next) => {
+                self.choose(state, next);
+                self.clear(state, r)?;
+            }
+            Action::Other(report, next) => self.hear_other(state, report, next),
             Action::TakeBack(slot) => state.arbiter.take_back(slot),
         }
         Some(())
@@ -279,7 +330,7 @@ impl Model for CellModel {
             faults: self.faults,
         };
         self.know_each_other(&mut state);
-        canonical::canonicalize(&mut state, self.clock.oldest(), &self.classes);
+        self.simplify(&mut state);
         vec![state]
     }
 
@@ -287,19 +338,27 @@ impl Model for CellModel {
         for r in self.robots() {
             actions.extend([Step::Remain, Step::Advance, Step::Enter].map(|step| Action::Tick(r, step)));
             actions.push(Action::Send(r));
-            actions.extend((0..state.to_arbiter[r.0].len()).map(|i| Action::ToArbiter(r, i)));
+            if self.is_free {
+                actions.push(Action::SendAsked(r));
+            }
+            for next in self.nexts(state, Some(r)) {
+                actions.extend((0..state.to_arbiter[r.0].len()).map(|i| Action::ToArbiter(r, i, *next)));
+            }
             actions.extend((0..state.to_guard[r.0].len()).map(|i| Action::ToGuard(r, i)));
             if state.faults.guard_crashes > 0 {
-                actions.push(Action::CrashGuard(r));
+                let starts = canonical::guard_starts(&mut state.clone(), r);
+                actions.extend(self.new_starts(&starts).map(|boot| Action::CrashGuard(r, boot)));
             }
             if state.faults.clears > 0 {
-                actions.push(Action::Clear(r));
+                actions.extend(self.nexts(state, Some(r)).iter().map(|next| Action::Clear(r, *next)));
             }
         }
         actions.push(Action::TimePasses);
         if state.faults.arbiter_crashes > 0 {
-            actions.push(Action::CrashArbiter);
+            let starts = canonical::arbiter_starts(&mut state.clone());
+            actions.extend(self.new_starts(&starts).map(Action::CrashArbiter));
         }
+        self.actions_of_others(state, actions);
         if self.planted == PlantedFault::UnilateralRelease {
             actions.extend(self.slots().map(Action::TakeBack));
         }
@@ -308,17 +367,12 @@ impl Model for CellModel {
     fn next_state(&self, before: &CellState, action: Action) -> Option<CellState> {
         let mut state = before.clone();
         self.act(&mut state, action)?;
-        canonical::canonicalize(&mut state, self.clock.oldest(), &self.classes);
+        self.simplify(&mut state);
         (state != *before).then_some(state)
     }
 
     fn properties(&self) -> Vec<Property<Self>> {
-        vec![Property::always(EXCLUSION, |model: &Self, state: &CellState| {
-            model.slots().all(|slot| {
-                let claims = |r: &RobotSlot| model.is_in(state, *r, slot) || state.guards[r.0].may_enter(slot, NOW);
-                model.robots().filter(claims).count() <= 1
-            })
-        })]
+        vec![Property::always(EXCLUSION, CellModel::is_exclusive)]
     }
 }
 

@@ -34,6 +34,17 @@ pub(super) struct FaultBudget {
     pub(super) clears: u8,
 }
 
+impl FaultBudget {
+    /// A number of faults without limit.
+    pub(super) const ANY: u8 = u8::MAX;
+
+    pub(super) fn spend(faults: &mut u8) {
+        if *faults != Self::ANY {
+            *faults -= 1;
+        }
+    }
+}
+
 impl CellState {
     pub(super) fn slots(&self) -> impl Iterator<Item = SlotId> + use<> {
         (0..self.guards[0].slots()).map(SlotId)

@@ -1,0 +1,105 @@
+//! Any number of other robots and slots: a cell is reduced to two of its robots and one of its slots.
+//!
+//! If a cell of any size could break exclusion, two of its robots would share one of its slots. This model keeps
+//! only these two robots and this slot. Everything else may do at any time whatever it could do to them, and more:
+//!
+//! - **The other slots** delay a robot at its places and order the grants. Here a robot may stay at each place, and
+//!   the arbiter may grant the slot to any robot, also to one that does not wait, or to none ([`Next`]).
+//! - **The other robots** are one robot, without a guard. It may be known to be outside or not, in each step. It may
+//!   be found inside, be granted the slot under the arbiter's own conditions, and give it up at any time, which
+//!   includes its crashes and clears.
+//! - **Requests to give a grant up and halts**, because of cycles or of robots that are found inside: a guard may be
+//!   asked to give up its grant whenever it sends. A guard that must halt does nothing that a guard which is asked
+//!   could not do too: the robot of such a guard may also stay outside.
+//! - **Programs**: a robot is in the warning zone or inside. A robot that is outside may do nothing that a robot in
+//!   the warning zone could not do, if it may be asked to give up its grant, and need not request one.
+//!
+//! So each step of a cell, seen from two of its robots and one slot, is a step of this model, or two, or none.
+//! `projection` checks this for each step of long schedules of larger cells.
+
+use super::state::{CellState, NOW};
+use super::{Action, CellModel};
+use crate::{Boot, Occupancy, RobotSlot, SlotReport, StateMessage, Token};
+
+/// The robot that the arbiter considers for a grant in its next step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Next {
+    /// The arbiter's own choice, in models without other robots; otherwise no robot.
+    Undecided,
+    Robot(RobotSlot),
+    /// A robot beyond the model.
+    Other,
+}
+
+/// What a robot beyond the model reports.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Report {
+    /// It is outside, and gives up the slot.
+    Outside,
+    Inside,
+}
+
+const UNDECIDED: &[Next] = &[Next::Undecided];
+const ANY: &[Next] = &[Next::Undecided, Next::Robot(RobotSlot(0)), Next::Robot(RobotSlot(1)), Next::Other];
+
+/// The robot beyond the model.
+fn other(state: &CellState) -> RobotSlot {
+    RobotSlot(state.guards.len())
+}
+
+/// Forgets everything that is chosen anew in each step.
+pub(super) fn forget(state: &mut CellState) {
+    let other = other(state);
+    state.arbiter.set_known(other, false, NOW);
+    state.arbiter.forget_grants_and_orders(other);
+    state.guards.iter_mut().for_each(|guard| guard.ask(false));
+    for message in state.to_arbiter.iter_mut().flatten() {
+        message.slots.iter_mut().for_each(|report| report.wants = false);
+    }
+    for answer in state.to_guard.iter_mut().flatten().flat_map(|message| &mut message.slots) {
+        (answer.release_requested, answer.halt) = (false, false);
+    }
+}
+
+impl CellModel {
+    /// The choices for a step of the arbiter that may free the slot if this robot holds it.
+    pub(super) fn nexts(&self, state: &CellState, sender: Option<RobotSlot>) -> &'static [Next] {
+        let may_be_free = self.slots().any(|slot| state.arbiter.holder(slot).is_none_or(|h| Some(h) == sender));
+        if self.is_free && may_be_free { ANY } else { UNDECIDED }
+    }
+
+    /// Prepares the arbiter so that its next step considers this robot only.
+    pub(super) fn choose(&self, state: &mut CellState, next: Next) {
+        if !self.is_free {
+            return;
+        }
+        let other = other(state);
+        let waiting = match next {
+            Next::Undecided => None,
+            Next::Robot(robot) => Some(robot),
+            Next::Other => Some(other),
+        };
+        state.arbiter.set_waiting(waiting);
+        // A robot beyond the model that is unknown, or not outside, only prevents grants.
+        state.arbiter.set_known(other, waiting.is_some(), NOW);
+    }
+
+    pub(super) fn actions_of_others(&self, state: &CellState, actions: &mut Vec<Action>) {
+        if self.is_free {
+            let nexts = self.nexts(state, Some(other(state)));
+            actions.extend(nexts.iter().map(|next| Action::Other(Report::Outside, *next)));
+            actions.push(Action::Other(Report::Inside, Next::Undecided));
+        }
+    }
+
+    pub(super) fn hear_other(&self, state: &mut CellState, report: Report, next: Next) {
+        self.choose(state, next);
+        let occupancy = if report == Report::Inside { Occupancy::Inside } else { Occupancy::Outside };
+        let released = Some(Token { boot: Boot(u64::MAX), number: u64::MAX });
+        let report = SlotReport { occupancy, wants: next == Next::Other, token: None, released };
+        let (boot, arbiter) = (Boot(1), state.arbiter.boot());
+        let message = StateMessage { robot: other(state), boot, sequence: 1, checksum: 0, arbiter, slots: vec![report] };
+        let replies = state.arbiter.receive(&message, NOW).replies;
+        self.reply(state, replies);
+    }
+}
