@@ -288,6 +288,15 @@ impl Guard {
         &mut self.serial
     }
 
+    /// This guard with one of its slots, as the guard of another robot.
+    pub(crate) fn project(&self, robot: RobotSlot, slot: SlotId) -> Self {
+        Self { robot, slots: vec![self.slots[slot.0].clone()], ..self.clone() }
+    }
+
+    pub(crate) fn replace_occupancy(&mut self, from: Occupancy, to: Occupancy) {
+        self.slots.iter_mut().filter(|slot| slot.occupancy == from).for_each(|slot| slot.occupancy = to);
+    }
+
     /// Reads or writes the fields that steps change.
     pub(crate) fn code(&mut self, codec: &mut super::model::codec::Codec) {
         codec.boot(&mut self.boot);

@@ -31,6 +31,26 @@ impl Arbiter {
         Some((holder.robot, holder.token.as_mut()?))
     }
 
+    /// This arbiter's knowledge of some robots and one slot, with other settings. All other robots become one, which is
+    /// the last one.
+    pub(crate) fn project(&self, robots: &[RobotSlot], slot: SlotId, settings: ArbiterSettings) -> Self {
+        let mut projected = Self { started: self.started, serial: self.serial, ..Self::new(settings, self.boot) };
+        projected.tokens = self.tokens;
+        for (record, robot) in projected.robots.iter_mut().zip(robots) {
+            *record = self.robots[robot.0].clone();
+            record.reports = vec![record.reports[slot.0]];
+        }
+        let index = |robot: RobotSlot| robots.iter().position(|r| *r == robot).unwrap_or(robots.len());
+        let holder = |holder: Holder| Holder { robot: RobotSlot(index(holder.robot)), ..holder };
+        projected.slots = vec![SlotRecord { holder: self.slots[slot.0].holder.map(holder), ..SlotRecord::default() }];
+        projected
+    }
+
+    /// Answers a robot without a message of it.
+    pub(crate) fn answer_again(&mut self, robot: RobotSlot) -> GrantsMessage {
+        self.answer(robot)
+    }
+
     /// Reads or writes the fields that steps change.
     pub(crate) fn code(&mut self, codec: &mut super::super::model::codec::Codec) {
         codec.boot(&mut self.boot);

@@ -2,11 +2,12 @@
 //! times only by whether they are past a limit, and robots with the same program are interchangeable.
 
 use std::collections::BTreeSet;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{Hash, Hasher};
 
+use super::mixer::Mixer;
 use super::renaming::what_counts;
 use super::state::{CellState, NOW};
-use crate::{Boot, Micros, RobotSlot, SlotId, SlotReport, Token};
+use crate::{Boot, Guard, Micros, RobotSlot, SlotId, SlotReport, Token};
 
 /// Serial number of the arbiter, above all ranks.
 const SERIAL: u64 = 100;
@@ -93,7 +94,7 @@ fn each_arbiter_start(state: &mut CellState, f: &mut dyn FnMut(&mut Boot)) {
 fn sort_robots(state: &mut CellState, classes: &[usize]) {
     state.set_indices(|_| 0);
     let key = |r: usize| {
-        let mut hasher = DefaultHasher::new();
+        let mut hasher = Mixer::default();
         state.robots[r].hash(&mut hasher);
         state.guards[r].hash(&mut hasher);
         state.to_arbiter[r].hash(&mut hasher);
@@ -127,7 +128,7 @@ fn drop_past_messages(state: &mut CellState, RobotSlot(robot): RobotSlot) {
     let any = Some(Token { boot: Boot(1), number: 1 });
     let guard = &guards[robot];
     to_guard[robot].retain(|m| !guard.is_past(m));
-    for message in to_guard[robot].iter_mut().filter(|m| !guard.confirms(m.echo, NOW)) {
+    for message in to_guard[robot].iter_mut().filter(|m| m.robot_boot != guard.boot() || !guard.confirms(m.echo, NOW)) {
         message.echo = 0;
     }
     if faults.arbiter_crashes == 0 {
@@ -161,27 +162,29 @@ fn forget_past_releases(state: &mut CellState, robot: RobotSlot) {
 }
 
 /// Replaces sequence numbers by ranks. For messages under way to the arbiter and its last received message only the
-/// order of the numbers counts. For answered messages only the times at which they were sent count. The guard has
-/// sent all of these messages, and sends higher numbers from now on.
+/// order of the numbers of one start counts. For answered messages only the times at which they were sent count,
+/// while they can still confirm a grant. The guard has sent all of these messages, and sends higher numbers from now on.
 fn rank_sequences(state: &mut CellState, robot: RobotSlot) {
     let CellState { arbiter, guards, to_arbiter, to_guard, .. } = state;
     let (guard, to_arbiter, to_guard) = (&mut guards[robot.0], &mut to_arbiter[robot.0], &mut to_guard[robot.0]);
-    let heard = arbiter.sequence_mut(robot);
-    let mut seen: Vec<u64> = to_arbiter.iter().map(|m| m.sequence).chain([0, *heard]).collect();
+    let own = guard.boot();
+    let heard = (*arbiter.guard_boot_mut(robot), *arbiter.sequence_mut(robot));
+    let mut seen: Vec<(Boot, u64)> = to_arbiter.iter().map(|m| (m.boot, m.sequence)).chain([heard, (own, 0)]).collect();
     seen.sort_unstable();
     seen.dedup();
-    let mut sent: Vec<Option<Micros>> = seen.iter().map(|sequence| guard.sent_at(*sequence)).collect();
-    let rank = |n: &mut u64| *n = seen.binary_search(n).unwrap_or(0) as u64;
-    rank(heard);
+    let time = |guard: &Guard, sequence| guard.sent_at(sequence).filter(|_| guard.confirms(sequence, NOW));
+    let mut sent: Vec<Option<Micros>> = seen.iter().filter(|s| s.0 == own).map(|s| time(guard, s.1)).collect();
+    let rank = |of: (Boot, u64)| seen.iter().filter(|other| other.0 == of.0 && other.1 > 0 && **other <= of).count() as u64;
+    *arbiter.sequence_mut(robot) = rank(heard);
     for message in to_arbiter.iter_mut() {
-        rank(&mut message.sequence);
+        message.sequence = rank((message.boot, message.sequence));
     }
-    let mut times: Vec<Micros> = to_guard.iter().filter_map(|m| guard.sent_at(m.echo)).collect();
+    let mut times: Vec<Micros> = to_guard.iter().filter_map(|m| time(guard, m.echo)).collect();
     times.sort_unstable();
     times.dedup();
     for message in to_guard {
-        let time = guard.sent_at(message.echo).and_then(|sent| times.iter().position(|time| *time == sent));
-        message.echo = time.map_or(0, |i| (seen.len() + i) as u64);
+        let index = time(guard, message.echo).and_then(|sent| times.iter().position(|time| *time == sent));
+        message.echo = index.map_or(0, |i| (sent.len() + i) as u64);
     }
     sent.extend(times.into_iter().map(Some));
     guard.set_sent(&sent);

@@ -5,10 +5,13 @@
 
 use std::time::{Duration, Instant};
 
+use stateright::{Checker, Model};
+
 use super::explorer::{self, Explored, Limits};
 use super::state::FaultBudget;
 
-const ANY: u8 = FaultBudget::ANY;
+/// A number of faults without limit.
+pub(super) const ANY: u8 = FaultBudget::ANY;
 use super::{CellModel, Clock, EXCLUSION, PlantedFault};
 
 /// Two robots and one slot.
@@ -20,13 +23,15 @@ const THREE: &[&[&str]] = &[&["_.X"], &["_.X"], &["_.X"]];
 /// Two robots that pass through two slots in opposite directions, from one slot into the other.
 const CROSSING: &[&[&str]] = &[&["_.X.__", "__.XX."], &["__.XX.", "_.X.__"]];
 /// The robots of `CROSSING`, and a third robot in one of the slots.
-const CROSSING_AND_ONE: &[&[&str]] = &[&["_.X.__", "__.XX."], &["__.XX.", "_.X.__"], &["_.X_", "____"]];
+pub(super) const CROSSING_AND_ONE: &[&[&str]] = &[&["_.X.__", "__.XX."], &["__.XX.", "_.X.__"], &["_.X_", "____"]];
 
+/// Two robots that pass through two slots in opposite directions, and a third one that enters both at once.
+pub(super) const THREE_AND_TWO: &[&[&str]] = &[&["_.X.__", "__.XX."], &["__.XX.", "_.X.__"], &["_.X", "_.X"]];
 /// Two robots that stay in the warning zone or inside.
 const FREE: &[&[&str]] = &[&[".X"], &[".X"]];
 
 /// A whole number from an environment variable.
-fn setting(name: &str) -> Option<usize> {
+pub(super) fn setting(name: &str) -> Option<usize> {
     std::env::var(name).ok()?.parse().ok()
 }
 
@@ -59,12 +64,12 @@ fn first(name: &'static str, model: CellModel) -> Check {
     Check { name, model, states: 10_000, is_complete: false }
 }
 
-fn with(guard_crashes: u8, arbiter_crashes: u8, clears: u8, programs: &[&[&str]]) -> CellModel {
+pub(super) fn with(guard_crashes: u8, arbiter_crashes: u8, clears: u8, programs: &[&[&str]]) -> CellModel {
     CellModel { faults: FaultBudget { guard_crashes, arbiter_crashes, clears }, ..CellModel::new(programs) }
 }
 
 /// Two robots and a slot of any cell, with faults without limit.
-fn free(guard_crashes: u8, arbiter_crashes: u8, clears: u8) -> CellModel {
+pub(super) fn free(guard_crashes: u8, arbiter_crashes: u8, clears: u8) -> CellModel {
     CellModel { is_free: true, ..with(guard_crashes, arbiter_crashes, clears, FREE) }
 }
 
@@ -118,10 +123,19 @@ fn no_slot_is_ever_shared() {
 fn planted_faults_are_found() {
     use PlantedFault::{HastyClear, TokensUnchecked, UnilateralRelease, UnseenRelease};
     for planted in [HastyClear, TokensUnchecked, UnilateralRelease, UnseenRelease] {
-        let faults = FaultBudget { clears: 1, ..FaultBudget::default() };
         let cell = if planted == UnseenRelease { FROM_BEYOND } else { PAIR };
-        let explored =
-            explore(&format!("{planted:?}"), &CellModel { faults, planted, ..CellModel::new(cell) }, 2_000_000);
-        assert!(explored.counterexample.is_some(), "{planted:?} is not noticed");
+        for (name, model) in [("pair", with(0, 0, 1, cell)), ("any cell", free(0, 0, 1))] {
+            let explored = explore(&format!("{planted:?}, {name}"), &CellModel { planted, ..model }, 2_000_000);
+            assert!(explored.counterexample.is_some(), "{planted:?} is not noticed: {name}");
+        }
+    }
+}
+
+/// Another checker, which compares whole states, finds the same states.
+#[test]
+fn as_many_states_as_by_another_checker() {
+    for model in [CellModel::new(FROM_BEYOND), free(0, 0, 0)] {
+        let states = explore("again", &model, usize::MAX).states;
+        assert_eq!(model.checker().spawn_bfs().join().unique_state_count(), states);
     }
 }

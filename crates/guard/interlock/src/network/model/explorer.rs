@@ -5,14 +5,18 @@
 //! be missed: the probability is less than n² / 2⁶⁵, for 100 million states less than 1 in 3,000.
 
 use std::collections::HashSet;
-use std::hash::{BuildHasherDefault, DefaultHasher, Hash, Hasher};
+use std::hash::{BuildHasherDefault, Hasher};
 use std::time::{Duration, Instant};
 
 use stateright::Model;
 
 use super::codec::Codec;
+use super::mixer::Mixer;
 use super::state::CellState;
 use super::{Action, CellModel};
+
+/// Explorations that take longer report their progress.
+const REPORTED: Duration = Duration::from_secs(20);
 
 /// Takes hashes as they are.
 #[derive(Debug, Default)]
@@ -64,8 +68,8 @@ impl Explorer<'_> {
     /// Adds a state unless it is known.
     fn add(&mut self, state: &mut CellState, parent: (u32, u8)) {
         let bytes = self.codec.encode(state);
-        let mut hasher = DefaultHasher::new();
-        bytes.hash(&mut hasher);
+        let mut hasher = Mixer::default();
+        hasher.write(bytes);
         if !self.seen.insert(hasher.finish()) {
             return;
         }
@@ -129,6 +133,9 @@ pub(super) fn explore(model: &CellModel, limits: Limits) -> Explored {
             is_within &= index % 1024 != 0 || started.elapsed() < limits.time;
         }
         depth += usize::from(rest.is_empty() && !explorer.found.is_empty());
+        if started.elapsed() > REPORTED {
+            println!("depth {depth}: {} states, {} of them not explored", explorer.parents.len(), explorer.parents.len() - index);
+        }
     }
     let counterexample = explorer.counterexample.map(|index| explorer.path(index));
     Explored { states: explorer.parents.len(), depth, is_complete: is_within, counterexample }

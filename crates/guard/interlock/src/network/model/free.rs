@@ -3,8 +3,9 @@
 //! If a cell of any size could break exclusion, two of its robots would share one of its slots. This model keeps
 //! only these two robots and this slot. Everything else may do at any time whatever it could do to them, and more:
 //!
-//! - **The other slots** delay a robot at its places and order the grants. Here a robot may stay at each place, and
-//!   the arbiter may grant the slot to any robot, also to one that does not wait, or to none ([`Next`]).
+//! - **The other slots** delay a robot at its places, order the grants, and are a reason for answers. Here a robot may
+//!   stay at each place, the arbiter may grant the slot to any robot, also to one that does not wait, or to none
+//!   ([`Next`]), and it may answer a robot at any time.
 //! - **The other robots** are one robot, without a guard. It may be known to be outside or not, in each step. It may
 //!   be found inside, be granted the slot under the arbiter's own conditions, and give it up at any time, which
 //!   includes its crashes and clears.
@@ -14,7 +15,7 @@
 //! - **Programs**: a robot is in the warning zone or inside. A robot that is outside may do nothing that a robot in
 //!   the warning zone could not do, if it may be asked to give up its grant, and need not request one.
 //!
-//! So each step of a cell, seen from two of its robots and one slot, is a step of this model, or two, or none.
+//! So each step of a cell, seen from two of its robots and one slot, is none, one or a few steps of this model.
 //! `projection` checks this for each step of long schedules of larger cells.
 
 use super::state::{CellState, NOW};
@@ -89,6 +90,7 @@ impl CellModel {
             let nexts = self.nexts(state, Some(other(state)));
             actions.extend(nexts.iter().map(|next| Action::Other(Report::Outside, *next)));
             actions.push(Action::Other(Report::Inside, Next::Undecided));
+            actions.extend(self.robots().map(Action::Answer));
         }
     }
 

@@ -12,7 +12,9 @@ mod checks;
 pub(crate) mod codec;
 mod explorer;
 mod free;
+mod mixer;
 mod programs;
+mod projection;
 pub(crate) mod renaming;
 mod state;
 
@@ -118,6 +120,8 @@ enum Action {
     TakeBack(SlotId),
     /// The arbiter receives a message of a robot beyond the model.
     Other(free::Report, Next),
+    /// The arbiter sends an answer because of a slot beyond the model.
+    Answer(RobotSlot),
 }
 
 impl CellModel {
@@ -309,6 +313,10 @@ impl CellModel {
                 self.clear(state, r)?;
             }
             Action::Other(report, next) => self.hear_other(state, report, next),
+            Action::Answer(r) => {
+                let answer = state.arbiter.answer_again(r);
+                self.reply(state, vec![answer]);
+            }
             Action::TakeBack(slot) => state.arbiter.take_back(slot),
         }
         Some(())
