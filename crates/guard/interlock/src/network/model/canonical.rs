@@ -7,7 +7,7 @@ use std::hash::{Hash, Hasher};
 use super::mixer::Mixer;
 use super::renaming::what_counts;
 use super::state::{CellState, NOW};
-use crate::{Boot, Guard, Micros, RobotSlot, SlotId, SlotReport, Token};
+use crate::{Arbiter, Boot, Guard, Micros, RobotSlot, SlotId, SlotReport, Token};
 
 /// Serial number of the arbiter, above all ranks.
 const SERIAL: u64 = 100;
@@ -29,7 +29,10 @@ pub(super) fn pass(state: &mut CellState, step: Micros) {
 /// robots of the same class have the same program.
 pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usize]) {
     each_time(state, |time| *time = (*time).max(NOW - oldest));
-    state.arbiter.forget_unread();
+    if state.second.as_ref().is_some_and(|second| second.boot() > state.arbiter.boot()) {
+        state.swap_arbiters();
+    }
+    state.arbiters().for_each(Arbiter::forget_unread);
     for robot in (0..state.guards.len()).map(RobotSlot) {
         state.guards[robot.0].forget_expired(NOW);
         drop_past_messages(state, robot);
@@ -41,12 +44,12 @@ pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usi
     }
     let starts = arbiter_starts(state);
     each_arbiter_start(state, &mut |boot| *boot = rank_start(*boot, &starts));
-    let mut held: Vec<Token> = state.slots().filter_map(|slot| held_token(state, slot)).collect();
+    let mut held: Vec<Token> = state.slots().flat_map(|slot| held_tokens(state, slot)).map(|(_, token)| token).collect();
     held.sort_unstable();
     for slot in state.slots() {
         rank_tokens(state, slot, &held);
     }
-    state.arbiter.set_counters(SERIAL, TOKENS);
+    state.arbiters().for_each(|arbiter| arbiter.set_counters(SERIAL, TOKENS));
     sort_robots(state, classes);
 }
 
@@ -75,13 +78,13 @@ pub(super) fn arbiter_starts(state: &mut CellState) -> Vec<Boot> {
 
 fn each_guard_start(state: &mut CellState, robot: RobotSlot, f: &mut dyn FnMut(&mut Boot)) {
     f(state.guards[robot.0].boot_mut());
-    f(state.arbiter.guard_boot_mut(robot));
+    state.arbiters().for_each(|arbiter| f(arbiter.guard_boot_mut(robot)));
     state.to_arbiter[robot.0].iter_mut().for_each(|m| f(&mut m.boot));
     state.to_guard[robot.0].iter_mut().for_each(|m| f(&mut m.robot_boot));
 }
 
 fn each_arbiter_start(state: &mut CellState, f: &mut dyn FnMut(&mut Boot)) {
-    f(state.arbiter.boot_mut());
+    state.arbiters().for_each(|arbiter| f(arbiter.boot_mut()));
     state.guards.iter_mut().for_each(|guard| f(guard.arbiter_mut()));
     state.to_arbiter.iter_mut().flatten().for_each(|m| f(&mut m.arbiter));
     state.to_guard.iter_mut().flatten().for_each(|m| f(&mut m.arbiter));
@@ -99,7 +102,9 @@ fn sort_robots(state: &mut CellState, classes: &[usize]) {
         state.guards[r].hash(&mut hasher);
         state.to_arbiter[r].hash(&mut hasher);
         state.to_guard[r].hash(&mut hasher);
-        state.arbiter.hash_robot(RobotSlot(r), &mut hasher);
+        for arbiter in std::iter::once(&state.arbiter).chain(&state.second) {
+            arbiter.hash_robot(RobotSlot(r), &mut hasher);
+        }
         (classes[r], hasher.finish())
     };
     let keys: Vec<_> = (0..classes.len()).map(key).collect();
@@ -117,28 +122,33 @@ fn sort_robots(state: &mut CellState, classes: &[usize]) {
 }
 
 fn each_time(state: &mut CellState, mut f: impl FnMut(&mut Micros)) {
-    state.arbiter.each_time(&mut f);
+    state.arbiters().for_each(|arbiter| arbiter.each_time(&mut f));
     state.guards.iter_mut().for_each(|guard| guard.each_time(&mut f));
 }
 
 /// Removes messages that change nothing, unless an arbiter may still start again. Of all others, keeps only what is
 /// read.
 fn drop_past_messages(state: &mut CellState, RobotSlot(robot): RobotSlot) {
-    let CellState { arbiter, guards, to_arbiter, to_guard, faults, .. } = state;
+    let CellState { arbiter, second, guards, to_arbiter, to_guard, faults, .. } = state;
+    let all = |test: &dyn Fn(&Arbiter) -> bool| test(arbiter) && second.as_ref().is_none_or(test);
     let any = Some(Token { boot: Boot(1), number: 1 });
     let guard = &guards[robot];
     to_guard[robot].retain(|m| !guard.is_past(m));
-    for message in to_guard[robot].iter_mut().filter(|m| m.robot_boot != guard.boot() || !guard.confirms(m.echo, NOW)) {
+    for message in
+        to_guard[robot].iter_mut().filter(|m| m.robot_boot != guard.boot() || !guard.confirms(m.echo, NOW))
+    {
         message.echo = 0;
     }
-    if faults.arbiter_crashes == 0 {
-        to_arbiter[robot].retain(|m| !arbiter.is_past(m));
+    if faults.arbiter_crashes == 0 && faults.second_arbiters == 0 {
+        to_arbiter[robot].retain(|m| !all(&|arbiter| arbiter.is_past(m)));
     }
     // Only an arbiter that starts again would accept such a message, and it would not trust it. This arbiter does not
-    // trust a message for a former arbiter either.
-    for message in to_arbiter[robot].iter_mut().filter(|m| arbiter.is_past(m) || m.arbiter < arbiter.boot()) {
-        message.slots.fill(SlotReport::UNKNOWN);
-        message.arbiter = Boot::NONE;
+    // trust a message for a former arbiter either. An arbiter that starts with a lower number learns of the higher one.
+    for message in to_arbiter[robot].iter_mut() {
+        if all(&|arbiter| arbiter.is_past(message) || message.arbiter < arbiter.boot()) {
+            message.slots.fill(SlotReport::UNKNOWN);
+            message.arbiter = if faults.is_set_back { message.arbiter } else { Boot::NONE };
+        }
     }
     for report in to_arbiter[robot].iter_mut().flat_map(|m| &mut m.slots) {
         report.occupancy = what_counts(report.occupancy);
@@ -150,7 +160,7 @@ fn drop_past_messages(state: &mut CellState, RobotSlot(robot): RobotSlot) {
 /// grant it to the robot again, or while the arbiter still has the robot as its holder.
 fn forget_past_releases(state: &mut CellState, robot: RobotSlot) {
     for slot in state.slots() {
-        let held = state.arbiter.holder_token_mut(slot).filter(|(holder, _)| *holder == robot).map(|(_, token)| *token);
+        let held = held_tokens(state, slot).into_iter().filter(|(holder, _)| *holder == robot).map(|(_, token)| token).min();
         let granted = state.to_guard[robot.0].iter().filter_map(|m| m.slots[slot.0].granted);
         let least = granted.chain(held).min();
         let forget = |released: &mut Option<Token>, least: Option<Token>| {
@@ -165,17 +175,21 @@ fn forget_past_releases(state: &mut CellState, robot: RobotSlot) {
 /// order of the numbers of one start counts. For answered messages only the times at which they were sent count,
 /// while they can still confirm a grant. The guard has sent all of these messages, and sends higher numbers from now on.
 fn rank_sequences(state: &mut CellState, robot: RobotSlot) {
-    let CellState { arbiter, guards, to_arbiter, to_guard, .. } = state;
+    let CellState { arbiter, second, guards, to_arbiter, to_guard, .. } = state;
     let (guard, to_arbiter, to_guard) = (&mut guards[robot.0], &mut to_arbiter[robot.0], &mut to_guard[robot.0]);
     let own = guard.boot();
-    let heard = (*arbiter.guard_boot_mut(robot), *arbiter.sequence_mut(robot));
-    let mut seen: Vec<(Boot, u64)> = to_arbiter.iter().map(|m| (m.boot, m.sequence)).chain([heard, (own, 0)]).collect();
+    let mut arbiters: Vec<&mut Arbiter> = std::iter::once(arbiter).chain(second).collect();
+    let heard = arbiters.iter_mut().map(|arbiter| (*arbiter.guard_boot_mut(robot), *arbiter.sequence_mut(robot)));
+    let under_way = to_arbiter.iter().map(|m| (m.boot, m.sequence));
+    let mut seen: Vec<(Boot, u64)> = heard.chain(under_way).chain([(own, 0)]).collect();
     seen.sort_unstable();
     seen.dedup();
     let time = |guard: &Guard, sequence| guard.sent_at(sequence).filter(|_| guard.confirms(sequence, NOW));
     let mut sent: Vec<Option<Micros>> = seen.iter().filter(|s| s.0 == own).map(|s| time(guard, s.1)).collect();
     let rank = |of: (Boot, u64)| seen.iter().filter(|other| other.0 == of.0 && other.1 > 0 && **other <= of).count() as u64;
-    *arbiter.sequence_mut(robot) = rank(heard);
+    for arbiter in arbiters {
+        *arbiter.sequence_mut(robot) = rank((*arbiter.guard_boot_mut(robot), *arbiter.sequence_mut(robot)));
+    }
     for message in to_arbiter.iter_mut() {
         message.sequence = rank((message.boot, message.sequence));
     }
@@ -204,9 +218,10 @@ fn rank_serials(state: &mut CellState, RobotSlot(robot): RobotSlot) {
     }
 }
 
-/// The grant of a slot that the arbiter issued last.
-fn held_token(state: &mut CellState, slot: SlotId) -> Option<Token> {
-    state.arbiter.holder_token_mut(slot).map(|(_, token)| *token)
+/// The grants of a slot that are held, with their robots.
+fn held_tokens(state: &mut CellState, slot: SlotId) -> Vec<(RobotSlot, Token)> {
+    let held = state.arbiters().filter_map(|arbiter| arbiter.holder_token_mut(slot));
+    held.map(|(robot, token)| (robot, *token)).collect()
 }
 
 /// Replaces the numbers of grants by ranks. Grants are compared within one slot; held grants (`held`, in their
@@ -214,8 +229,7 @@ fn held_token(state: &mut CellState, slot: SlotId) -> Option<Token> {
 fn rank_tokens(state: &mut CellState, slot: SlotId, held: &[Token]) {
     let mut seen = BTreeSet::new();
     each_token(state, slot, &mut |token| _ = seen.insert(*token));
-    let of_slot = held_token(state, slot);
-    let rank = |t: Token| match held.iter().position(|other| Some(*other) == of_slot).filter(|_| Some(t) == of_slot) {
+    let rank = |t: Token| match held.iter().position(|other| *other == t) {
         Some(order) => HELD + order as u64,
         None => seen.iter().filter(|other| other.boot == t.boot && **other < t).count() as u64 + 1,
     };
@@ -223,9 +237,7 @@ fn rank_tokens(state: &mut CellState, slot: SlotId, held: &[Token]) {
 }
 
 fn each_token(state: &mut CellState, slot: SlotId, f: &mut impl FnMut(&mut Token)) {
-    if let Some((_, token)) = state.arbiter.holder_token_mut(slot) {
-        f(token);
-    }
+    state.arbiters().filter_map(|arbiter| arbiter.holder_token_mut(slot)).for_each(|(_, token)| f(token));
     for guard in &mut state.guards {
         guard.each_token(&mut |s, token| token.iter_mut().filter(|_| s == slot).for_each(&mut *f));
     }

@@ -65,12 +65,23 @@ fn first(name: &'static str, model: CellModel) -> Check {
 }
 
 pub(super) fn with(guard_crashes: u8, arbiter_crashes: u8, clears: u8, programs: &[&[&str]]) -> CellModel {
-    CellModel { faults: FaultBudget { guard_crashes, arbiter_crashes, clears }, ..CellModel::new(programs) }
+    let faults = FaultBudget { guard_crashes, arbiter_crashes, clears, ..FaultBudget::default() };
+    CellModel { faults, ..CellModel::new(programs) }
 }
 
 /// Two robots and a slot of any cell, with faults without limit.
 pub(super) fn free(guard_crashes: u8, arbiter_crashes: u8, clears: u8) -> CellModel {
     CellModel { is_free: true, ..with(guard_crashes, arbiter_crashes, clears, FREE) }
+}
+
+impl CellModel {
+    fn set_back(self) -> Self {
+        Self { faults: FaultBudget { is_set_back: true, ..self.faults }, ..self }
+    }
+
+    fn two_arbiters(self) -> Self {
+        Self { faults: FaultBudget { second_arbiters: 1, ..self.faults }, ..self }
+    }
 }
 
 fn checks() -> Vec<Check> {
@@ -101,7 +112,11 @@ fn checks() -> Vec<Check> {
         first("any cell, clears", free(0, 0, ANY)),
         first("any cell, one fault", free(1, 1, 1)),
         first("any cell, every fault", free(ANY, ANY, ANY)),
-        first("any cell, set back", CellModel { is_set_back: true, ..free(ANY, ANY, ANY) }),
+        first("any cell, set back", free(ANY, ANY, ANY).set_back()),
+        first("any cell, two arbiters", free(0, 0, 0).two_arbiters()),
+        first("any cell, two arbiters, guards", free(ANY, 0, 0).two_arbiters()),
+        first("any cell, two arbiters, crashes", free(ANY, ANY, 0).two_arbiters()),
+        first("any cell, two arbiters, clears", free(0, 0, ANY).two_arbiters()),
         first("crossing and one", CellModel::new(CROSSING_AND_ONE)),
         first("crossing and one, every fault", with(1, 1, 1, CROSSING_AND_ONE)),
     ]

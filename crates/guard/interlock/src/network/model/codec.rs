@@ -109,7 +109,8 @@ impl Codec {
     }
 
     fn budget(&mut self, faults: &mut FaultBudget) {
-        for number in [&mut faults.guard_crashes, &mut faults.arbiter_crashes, &mut faults.clears] {
+        let FaultBudget { guard_crashes, arbiter_crashes, clears, second_arbiters, is_set_back: _ } = faults;
+        for number in [guard_crashes, arbiter_crashes, clears, second_arbiters] {
             let mut wide = u64::from(*number);
             self.number(&mut wide);
             *number = wide as u8;
@@ -119,6 +120,13 @@ impl Codec {
     fn state(&mut self, state: &mut CellState) {
         let slots = state.guards[0].slots();
         state.arbiter.code(self);
+        let mut is_second = state.second.is_some();
+        self.flag(&mut is_second);
+        if is_second {
+            state.second.get_or_insert_with(|| state.arbiter.clone()).code(self);
+        } else {
+            state.second = None;
+        }
         for r in 0..state.guards.len() {
             state.guards[r].code(self);
             let RobotState { place, enters } = &mut state.robots[r];

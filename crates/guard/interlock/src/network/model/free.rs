@@ -19,7 +19,7 @@
 //! `projection` checks this for each step of long schedules of larger cells.
 
 use super::state::{CellState, NOW};
-use super::{Action, CellModel};
+use super::{ArbiterStep, CellModel};
 use crate::{Boot, Occupancy, RobotSlot, SlotReport, StateMessage, Token};
 
 /// The robot that the arbiter considers for a grant in its next step.
@@ -51,8 +51,10 @@ fn other(state: &CellState) -> RobotSlot {
 /// Forgets everything that is chosen anew in each step.
 pub(super) fn forget(state: &mut CellState) {
     let other = other(state);
-    state.arbiter.set_known(other, false, NOW);
-    state.arbiter.forget_grants_and_orders(other);
+    for arbiter in state.arbiters() {
+        arbiter.set_known(other, false, NOW);
+        arbiter.forget_grants_and_orders(other);
+    }
     state.guards.iter_mut().for_each(|guard| guard.ask(false));
     for message in state.to_arbiter.iter_mut().flatten() {
         message.slots.iter_mut().for_each(|report| report.wants = false);
@@ -85,12 +87,12 @@ impl CellModel {
         state.arbiter.set_known(other, waiting.is_some(), NOW);
     }
 
-    pub(super) fn actions_of_others(&self, state: &CellState, actions: &mut Vec<Action>) {
+    pub(super) fn steps_of_others(&self, state: &CellState, steps: &mut Vec<ArbiterStep>) {
         if self.is_free {
             let nexts = self.nexts(state, Some(other(state)));
-            actions.extend(nexts.iter().map(|next| Action::Other(Report::Outside, *next)));
-            actions.push(Action::Other(Report::Inside, Next::Undecided));
-            actions.extend(self.robots().map(Action::Answer));
+            steps.extend(nexts.iter().map(|next| ArbiterStep::Other(Report::Outside, *next)));
+            steps.push(ArbiterStep::Other(Report::Inside, Next::Undecided));
+            steps.extend(self.robots().map(ArbiterStep::Answer));
         }
     }
 

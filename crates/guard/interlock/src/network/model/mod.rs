@@ -88,8 +88,6 @@ struct CellModel {
     classes: Vec<usize>,
     /// True if the cell has any number of other robots and slots ([`free`]).
     is_free: bool,
-    /// True if a process may start with a lower number than the former one.
-    is_set_back: bool,
 }
 
 /// What a robot does in a tick.
@@ -110,13 +108,23 @@ enum Action {
     Send(RobotSlot),
     /// The guard sends a message after it was asked to give up its grants.
     SendAsked(RobotSlot),
-    /// The arbiter receives a message, which may be delivered again.
-    ToArbiter(RobotSlot, usize, Next),
     ToGuard(RobotSlot, usize),
     TimePasses,
     CrashGuard(RobotSlot, Boot),
-    CrashArbiter(Boot),
+    Arbiter(ArbiterStep),
+    /// A step of the other arbiter.
+    SecondArbiter(ArbiterStep),
+    /// Another arbiter starts, while the first one continues.
+    StartSecondArbiter(Boot),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum ArbiterStep {
+    /// The arbiter receives a message, which may be delivered again.
+    Receive(RobotSlot, usize, Next),
     Clear(RobotSlot, Next),
+    /// The arbiter starts again with this number.
+    Crash(Boot),
     TakeBack(SlotId),
     /// The arbiter receives a message of a robot beyond the model.
     Other(free::Report, Next),
@@ -131,8 +139,7 @@ impl CellModel {
         let programs: Vec<_> = programs.iter().map(|words| Program::new(words)).collect();
         let slots = programs[0].slots();
         let (clock, faults, planted) = (Clock::Coarse, FaultBudget::default(), PlantedFault::None);
-        let (is_free, is_set_back) = (false, false);
-        Self { programs, slots, under_way: 1, clock, faults, planted, classes, is_free, is_set_back }
+        Self { programs, slots, under_way: 1, clock, faults, planted, classes, is_free: false }
     }
 
     fn slots(&self) -> impl Iterator<Item = SlotId> + use<> {
@@ -272,7 +279,7 @@ impl CellModel {
     /// The numbers of a new process of which the former ones had these, in rising order: above them, and if clocks may
     /// be set back also between and below them.
     fn new_starts(&self, starts: &[Boot]) -> impl Iterator<Item = Boot> {
-        let back = if self.is_set_back { starts } else { &[] };
+        let back = if self.faults.is_set_back { starts } else { &[] };
         let last = starts.last().copied().unwrap_or(Boot::NONE);
         let between: Vec<Boot> = back.iter().map(|boot| Boot(boot.0 - canonical::BELOW)).chain([last.next()]).collect();
         between.into_iter()
@@ -294,7 +301,6 @@ impl CellModel {
                 state.guards[r.0].ask(true);
                 self.send(state, r);
             }
-            Action::ToArbiter(r, i, next) => self.to_arbiter(state, r, i, next),
             Action::ToGuard(r, i) => {
                 let message = state.to_guard[r.0][i].clone();
                 let _ = state.guards[r.0].receive(&message);
@@ -304,22 +310,59 @@ impl CellModel {
                 FaultBudget::spend(&mut state.faults.guard_crashes);
                 state.guards[r.0] = self.guard(r, boot);
             }
-            Action::CrashArbiter(boot) => {
+            Action::Arbiter(step) => self.arbiter_step(state, step)?,
+            Action::SecondArbiter(step) => {
+                state.swap_arbiters();
+                self.arbiter_step(state, step)?;
+                state.swap_arbiters();
+            }
+            Action::StartSecondArbiter(boot) => {
+                FaultBudget::spend(&mut state.faults.second_arbiters);
+                state.second = Some(Arbiter::new(self.settings(), boot));
+            }
+        }
+        Some(())
+    }
+
+    fn arbiter_step(&self, state: &mut CellState, step: ArbiterStep) -> Option<()> {
+        match step {
+            ArbiterStep::Receive(r, i, next) => self.to_arbiter(state, r, i, next),
+            ArbiterStep::Crash(boot) => {
                 FaultBudget::spend(&mut state.faults.arbiter_crashes);
                 state.arbiter = Arbiter::new(self.settings(), boot);
             }
-            Action::Clear(r, next) => {
+            ArbiterStep::Clear(r, next) => {
                 self.choose(state, next);
                 self.clear(state, r)?;
             }
-            Action::Other(report, next) => self.hear_other(state, report, next),
-            Action::Answer(r) => {
+            ArbiterStep::Other(report, next) => self.hear_other(state, report, next),
+            ArbiterStep::Answer(r) => {
                 let answer = state.arbiter.answer_again(r);
                 self.reply(state, vec![answer]);
             }
-            Action::TakeBack(slot) => state.arbiter.take_back(slot),
+            ArbiterStep::TakeBack(slot) => state.arbiter.take_back(slot),
         }
         Some(())
+    }
+
+    /// The steps that the first arbiter may take.
+    fn arbiter_steps(&self, state: &mut CellState) -> Vec<ArbiterStep> {
+        let mut steps = Vec::new();
+        for r in self.robots() {
+            for next in self.nexts(state, Some(r)) {
+                steps.extend((0..state.to_arbiter[r.0].len()).map(|i| ArbiterStep::Receive(r, i, *next)));
+                steps.extend((state.faults.clears > 0).then_some(ArbiterStep::Clear(r, *next)));
+            }
+        }
+        if state.faults.arbiter_crashes > 0 {
+            let starts = canonical::arbiter_starts(state);
+            steps.extend(self.new_starts(&starts).map(ArbiterStep::Crash));
+        }
+        self.steps_of_others(state, &mut steps);
+        if self.planted == PlantedFault::UnilateralRelease {
+            steps.extend(self.slots().map(ArbiterStep::TakeBack));
+        }
+        steps
     }
 }
 
@@ -331,6 +374,7 @@ impl Model for CellModel {
         let robots = self.programs.len();
         let mut state = CellState {
             arbiter: Arbiter::new(self.settings(), Boot(1)),
+            second: None,
             guards: self.robots().map(|r| self.guard(r, Boot(1))).collect(),
             robots: vec![RobotState { place: 0, enters: false }; robots],
             to_arbiter: vec![Vec::new(); robots],
@@ -343,32 +387,27 @@ impl Model for CellModel {
     }
 
     fn actions(&self, state: &CellState, actions: &mut Vec<Action>) {
+        let mut state = state.clone();
         for r in self.robots() {
             actions.extend([Step::Remain, Step::Advance, Step::Enter].map(|step| Action::Tick(r, step)));
             actions.push(Action::Send(r));
             if self.is_free {
                 actions.push(Action::SendAsked(r));
             }
-            for next in self.nexts(state, Some(r)) {
-                actions.extend((0..state.to_arbiter[r.0].len()).map(|i| Action::ToArbiter(r, i, *next)));
-            }
             actions.extend((0..state.to_guard[r.0].len()).map(|i| Action::ToGuard(r, i)));
             if state.faults.guard_crashes > 0 {
-                let starts = canonical::guard_starts(&mut state.clone(), r);
+                let starts = canonical::guard_starts(&mut state, r);
                 actions.extend(self.new_starts(&starts).map(|boot| Action::CrashGuard(r, boot)));
-            }
-            if state.faults.clears > 0 {
-                actions.extend(self.nexts(state, Some(r)).iter().map(|next| Action::Clear(r, *next)));
             }
         }
         actions.push(Action::TimePasses);
-        if state.faults.arbiter_crashes > 0 {
-            let starts = canonical::arbiter_starts(&mut state.clone());
-            actions.extend(self.new_starts(&starts).map(Action::CrashArbiter));
-        }
-        self.actions_of_others(state, actions);
-        if self.planted == PlantedFault::UnilateralRelease {
-            actions.extend(self.slots().map(Action::TakeBack));
+        actions.extend(self.arbiter_steps(&mut state).into_iter().map(Action::Arbiter));
+        if state.second.is_some() {
+            state.swap_arbiters();
+            actions.extend(self.arbiter_steps(&mut state).into_iter().map(Action::SecondArbiter));
+        } else if state.faults.second_arbiters > 0 {
+            let starts = canonical::arbiter_starts(&mut state);
+            actions.extend(self.new_starts(&starts).map(Action::StartSecondArbiter));
         }
     }
 

@@ -8,7 +8,7 @@ use stateright::Model;
 use super::checks::{ANY, CROSSING_AND_ONE, THREE_AND_TWO, free, setting, with};
 use super::mixer::Mixer;
 use super::state::{CellState, RobotState};
-use super::{Action, CellModel, Step};
+use super::{Action, ArbiterStep, CellModel, Step};
 use crate::{Occupancy, RobotSlot, SlotId};
 
 /// Steps of the suite, per cell.
@@ -42,6 +42,7 @@ fn project(cell: &CellModel, model: &CellModel, state: &CellState, pair: [RobotS
     let guard = |(index, r): (usize, &RobotSlot)| state.guards[r.0].project(RobotSlot(index), slot);
     let mut projected = CellState {
         arbiter: state.arbiter.project(&pair, slot, model.settings()),
+        second: None,
         guards: pair.iter().enumerate().map(guard).collect(),
         robots: pair.iter().map(|r| project_robot(cell, state, *r, slot)).collect(),
         to_arbiter: pair.iter().map(|r| state.to_arbiter[r.0].clone()).collect(),
@@ -66,14 +67,14 @@ fn leads_to(model: &CellModel, from: &CellState, to: &CellState, steps: usize, i
     let mut actions = Vec::new();
     model.actions(from, &mut actions);
     if !is_first {
-        actions.retain(|action| matches!(action, Action::Answer(_) | Action::Tick(_, Step::Enter)));
+        actions.retain(|action| matches!(action, Action::Arbiter(ArbiterStep::Answer(_)) | Action::Tick(_, Step::Enter)));
     }
     let nexts: Vec<CellState> = actions.into_iter().filter_map(|action| model.next_state(from, action)).collect();
     nexts.contains(to) || steps > 1 && nexts.iter().any(|next| leads_to(model, next, to, steps - 1, false))
 }
 
 fn is_fault(action: Action) -> bool {
-    matches!(action, Action::CrashGuard(..) | Action::CrashArbiter(_) | Action::Clear(..))
+    matches!(action, Action::CrashGuard(..) | Action::Arbiter(ArbiterStep::Crash(_) | ArbiterStep::Clear(..)))
 }
 
 /// Takes random steps, and calls `check` with the state before and after each.

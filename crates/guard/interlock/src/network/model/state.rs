@@ -10,6 +10,8 @@ pub(super) const NOW: Micros = Micros(1_000);
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct CellState {
     pub(super) arbiter: Arbiter,
+    /// Another arbiter, with a lower start.
+    pub(super) second: Option<Arbiter>,
     pub(super) guards: Vec<Guard>,
     pub(super) robots: Vec<RobotState>,
     pub(super) to_arbiter: Vec<Vec<StateMessage>>,
@@ -32,6 +34,10 @@ pub(super) struct FaultBudget {
     pub(super) guard_crashes: u8,
     pub(super) arbiter_crashes: u8,
     pub(super) clears: u8,
+    /// Starts of a second arbiter while the first one continues.
+    pub(super) second_arbiters: u8,
+    /// True if a process may start with a lower number than the former one.
+    pub(super) is_set_back: bool,
 }
 
 impl FaultBudget {
@@ -50,9 +56,20 @@ impl CellState {
         (0..self.guards[0].slots()).map(SlotId)
     }
 
+    pub(super) fn arbiters(&mut self) -> impl Iterator<Item = &mut Arbiter> {
+        std::iter::once(&mut self.arbiter).chain(&mut self.second)
+    }
+
+    /// Makes the second arbiter the first one, if there is one.
+    pub(super) fn swap_arbiters(&mut self) {
+        if let Some(second) = &mut self.second {
+            std::mem::swap(&mut self.arbiter, second);
+        }
+    }
+
     /// Gives robot `r` the index `to[r]`.
     pub(super) fn reindex(&mut self, to: &[usize]) {
-        self.arbiter.reindex(to);
+        self.arbiters().for_each(|arbiter| arbiter.reindex(to));
         permute(&mut self.robots, to);
         permute(&mut self.guards, to);
         permute(&mut self.to_arbiter, to);
