@@ -12,9 +12,13 @@ fn ms(milliseconds: u64) -> Micros {
     Micros(1000 * milliseconds)
 }
 
-fn arbiter() -> Arbiter {
+fn settings() -> ArbiterSettings {
     let robots = ["a", "b"].map(|name| RobotSettings::new(name, [SLOT])).to_vec();
-    Arbiter::new(ArbiterSettings { checksum: CHECKSUM, ..ArbiterSettings::new(robots, 1) }, Boot(1))
+    ArbiterSettings { checksum: CHECKSUM, ..ArbiterSettings::new(robots, 1) }
+}
+
+fn arbiter() -> Arbiter {
+    Arbiter::new(settings(), Boot(1))
 }
 
 /// The guard of the cell's robot with this number, with this checksum of the cell file.
@@ -93,4 +97,24 @@ fn a_late_answer_confirms_a_grant_for_the_rest_of_its_validity_only() {
     guard.receive(&answer).unwrap();
     assert!(guard.may_enter(SLOT, ms(345)) && guard.may_enter(SLOT, ms(350)));
     assert!(!guard.may_enter(SLOT, ms(351)), "50 ms after the message that was answered, not after the last one");
+}
+
+/// A robot may be cleared at one arbiter while it obeys another one, which still confirms its grant: then two robots
+/// may enter. So a person who clears a robot makes sure that only one arbiter runs.
+#[test]
+fn a_clear_does_not_reach_a_robot_that_obeys_another_arbiter() {
+    let (mut first, mut second) = (arbiter(), Arbiter::new(settings(), Boot(2)));
+    let mut guards = [guard(0, CHECKSUM), guard(1, CHECKSUM)];
+    until_heard(&mut guards, &mut first, 0, 100);
+    let [mut near, mut other] = guards;
+    assert!(near.may_enter(SLOT, ms(100)));
+    // The second arbiter reaches only the other robot, and the first one only the robot that is near.
+    until_heard(std::slice::from_mut(&mut other), &mut second, 100, 2000);
+    until_heard(std::slice::from_mut(&mut near), &mut first, 100, 2000);
+    second.clear(RobotSlot(0), ms(2000)).expect("it was silent for long enough");
+    other.observe(SLOT, Occupancy::Warning);
+    for reply in second.receive(&other.state(ms(2000)), ms(2000)).replies {
+        other.receive(&reply).expect("it is the last one");
+    }
+    assert!(near.may_enter(SLOT, ms(2000)) && other.may_enter(SLOT, ms(2000)));
 }

@@ -44,7 +44,8 @@ pub(super) fn canonicalize(state: &mut CellState, oldest: Micros, classes: &[usi
     }
     let starts = arbiter_starts(state);
     each_arbiter_start(state, &mut |boot| *boot = rank_start(*boot, &starts));
-    let mut held: Vec<Token> = state.slots().flat_map(|slot| held_tokens(state, slot)).map(|(_, token)| token).collect();
+    let mut held: Vec<Token> =
+        state.slots().flat_map(|slot| held_tokens(state, slot)).map(|(_, token)| token).collect();
     held.sort_unstable();
     for slot in state.slots() {
         rank_tokens(state, slot, &held);
@@ -134,20 +135,19 @@ fn drop_past_messages(state: &mut CellState, RobotSlot(robot): RobotSlot) {
     let any = Some(Token { boot: Boot(1), number: 1 });
     let guard = &guards[robot];
     to_guard[robot].retain(|m| !guard.is_past(m));
-    for message in
-        to_guard[robot].iter_mut().filter(|m| m.robot_boot != guard.boot() || !guard.confirms(m.echo, NOW))
-    {
+    for message in to_guard[robot].iter_mut().filter(|m| m.robot_boot != guard.boot() || !guard.confirms(m.echo, NOW)) {
         message.echo = 0;
     }
     if faults.arbiter_crashes == 0 && faults.second_arbiters == 0 {
         to_arbiter[robot].retain(|m| !all(&|arbiter| arbiter.is_past(m)));
     }
-    // Only an arbiter that starts again would accept such a message, and it would not trust it. This arbiter does not
-    // trust a message for a former arbiter either. An arbiter that starts with a lower number learns of the higher one.
-    for message in to_arbiter[robot].iter_mut() {
-        if all(&|arbiter| arbiter.is_past(message) || message.arbiter < arbiter.boot()) {
+    // An arbiter trusts only messages that name its start. Other arbiters may accept a message, and learn of its start.
+    for message in &mut to_arbiter[robot] {
+        if all(&|arbiter| arbiter.is_past(message) || message.arbiter != arbiter.boot()) {
             message.slots.fill(SlotReport::UNKNOWN);
-            message.arbiter = if faults.is_set_back { message.arbiter } else { Boot::NONE };
+            if !faults.is_set_back && all(&|arbiter| message.arbiter <= arbiter.boot()) {
+                message.arbiter = Boot::NONE;
+            }
         }
     }
     for report in to_arbiter[robot].iter_mut().flat_map(|m| &mut m.slots) {
@@ -160,7 +160,8 @@ fn drop_past_messages(state: &mut CellState, RobotSlot(robot): RobotSlot) {
 /// grant it to the robot again, or while the arbiter still has the robot as its holder.
 fn forget_past_releases(state: &mut CellState, robot: RobotSlot) {
     for slot in state.slots() {
-        let held = held_tokens(state, slot).into_iter().filter(|(holder, _)| *holder == robot).map(|(_, token)| token).min();
+        let held =
+            held_tokens(state, slot).into_iter().filter(|(holder, _)| *holder == robot).map(|(_, token)| token).min();
         let granted = state.to_guard[robot.0].iter().filter_map(|m| m.slots[slot.0].granted);
         let least = granted.chain(held).min();
         let forget = |released: &mut Option<Token>, least: Option<Token>| {
@@ -186,7 +187,8 @@ fn rank_sequences(state: &mut CellState, robot: RobotSlot) {
     seen.dedup();
     let time = |guard: &Guard, sequence| guard.sent_at(sequence).filter(|_| guard.confirms(sequence, NOW));
     let mut sent: Vec<Option<Micros>> = seen.iter().filter(|s| s.0 == own).map(|s| time(guard, s.1)).collect();
-    let rank = |of: (Boot, u64)| seen.iter().filter(|other| other.0 == of.0 && other.1 > 0 && **other <= of).count() as u64;
+    let rank =
+        |of: (Boot, u64)| seen.iter().filter(|other| other.0 == of.0 && other.1 > 0 && **other <= of).count() as u64;
     for arbiter in arbiters {
         *arbiter.sequence_mut(robot) = rank((*arbiter.guard_boot_mut(robot), *arbiter.sequence_mut(robot)));
     }

@@ -75,7 +75,9 @@ impl Codec {
         let mut length = list.len();
         self.index(&mut length);
         list.resize_with(length, new);
-        list.iter_mut().for_each(|element| code(self, element));
+        for element in list {
+            code(self, element);
+        }
     }
 
     pub(crate) fn robots(&mut self, robots: &mut Vec<RobotSlot>) {

@@ -134,7 +134,11 @@ pub(super) fn explore(model: &CellModel, limits: Limits) -> Explored {
         }
         depth += usize::from(rest.is_empty() && !explorer.found.is_empty());
         if started.elapsed() > REPORTED {
-            println!("depth {depth}: {} states, {} of them not explored", explorer.parents.len(), explorer.parents.len() - index);
+            println!(
+                "depth {depth}: {} states, {} of them not explored",
+                explorer.parents.len(),
+                explorer.parents.len() - index
+            );
         }
     }
     let counterexample = explorer.counterexample.map(|index| explorer.path(index));

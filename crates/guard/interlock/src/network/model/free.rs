@@ -102,7 +102,8 @@ impl CellModel {
         let released = Some(Token { boot: Boot(u64::MAX), number: u64::MAX });
         let report = SlotReport { occupancy, wants: next == Next::Other, token: None, released };
         let (boot, arbiter) = (Boot(1), state.arbiter.boot());
-        let message = StateMessage { robot: other(state), boot, sequence: 1, checksum: 0, arbiter, slots: vec![report] };
+        let message =
+            StateMessage { robot: other(state), boot, sequence: 1, checksum: 0, arbiter, slots: vec![report] };
         let replies = state.arbiter.receive(&message, NOW).replies;
         self.reply(state, replies);
     }

@@ -6,8 +6,9 @@ use std::hash::Hasher;
 use stateright::Model;
 
 use super::checks::{ANY, CROSSING_AND_ONE, THREE_AND_TWO, free, setting, with};
+use super::free::{Next, Report};
 use super::mixer::Mixer;
-use super::state::{CellState, RobotState};
+use super::state::{CellState, FaultBudget, RobotState};
 use super::{Action, ArbiterStep, CellModel, Step};
 use crate::{Occupancy, RobotSlot, SlotId};
 
@@ -67,7 +68,13 @@ fn leads_to(model: &CellModel, from: &CellState, to: &CellState, steps: usize, i
     let mut actions = Vec::new();
     model.actions(from, &mut actions);
     if !is_first {
-        actions.retain(|action| matches!(action, Action::Arbiter(ArbiterStep::Answer(_)) | Action::Tick(_, Step::Enter)));
+        actions.retain(|action| match action {
+            Action::Tick(_, step) => *step == Step::Enter,
+            Action::Arbiter(ArbiterStep::Answer(_)) => true,
+            // A third robot lets an arbiter start again.
+            Action::Arbiter(ArbiterStep::Other(report, next)) => (*report, *next) == (Report::Outside, Next::Undecided),
+            _ => false,
+        });
     }
     let nexts: Vec<CellState> = actions.into_iter().filter_map(|action| model.next_state(from, action)).collect();
     nexts.contains(to) || steps > 1 && nexts.iter().any(|next| leads_to(model, next, to, steps - 1, false))
@@ -89,10 +96,12 @@ fn walk(cell: &CellModel, steps: usize, mut check: impl FnMut(&CellState, Action
         cell.actions(&state, &mut actions);
         let action = actions[dice.below(actions.len())];
         let mut next = state.clone();
-        if is_fault(action) && dice.below(12) > 0 || cell.act(&mut next, action).is_none() {
+        let is_rare = is_fault(action) || action == Action::TimePasses;
+        if is_rare && dice.below(12) > 0 || cell.act(&mut next, action).is_none() {
             continue;
         }
-        if step % UNRANKED == 0 {
+        // A process whose clock is set back takes a number between ranks.
+        if step % UNRANKED == 0 || cell.faults.is_set_back {
             cell.simplify(&mut next);
         }
         check(&state, action, &next);
@@ -104,19 +113,24 @@ fn walk(cell: &CellModel, steps: usize, mut check: impl FnMut(&CellState, Action
 fn sharing(cell: &CellModel) -> Vec<([RobotSlot; 2], SlotId)> {
     let uses = |r: RobotSlot, slot| cell.programs[r.0].uses(slot);
     let pairs = || cell.robots().flat_map(|a| cell.robots().filter(move |b| a.0 < b.0).map(move |b| [a, b]));
-    cell.slots().flat_map(|slot| pairs().filter(move |pair| pair.iter().all(|r| uses(*r, slot))).map(move |p| (p, slot))).collect()
+    cell.slots()
+        .flat_map(|slot| pairs().filter(move |pair| pair.iter().all(|r| uses(*r, slot))).map(move |p| (p, slot)))
+        .collect()
 }
 
 /// Three robots and two slots, with every fault any number of times. Robots keep their index.
-fn cells(faults: u8) -> [(&'static str, CellModel); 2] {
-    let cell = |programs| CellModel { classes: vec![0, 1, 2], ..with(faults, faults, faults, programs) };
-    [("crossing and one", cell(CROSSING_AND_ONE)), ("three in two", cell(THREE_AND_TWO))]
+fn cells() -> [(&'static str, CellModel); 3] {
+    let cell = |programs| CellModel { classes: vec![0, 1, 2], ..with(ANY, ANY, ANY, programs) };
+    let three_in_two = cell(THREE_AND_TWO);
+    let faults = FaultBudget { is_set_back: true, ..three_in_two.faults };
+    let set_back = CellModel { faults, ..cell(THREE_AND_TWO) };
+    [("crossing and one", cell(CROSSING_AND_ONE)), ("three in two", three_in_two), ("set back", set_back)]
 }
 
 #[test]
 fn each_step_of_three_robots_and_two_slots_is_possible_in_the_model_of_any_cell() {
-    let model = free(ANY, ANY, ANY);
-    for (name, cell) in cells(ANY) {
+    for (name, cell) in cells() {
+        let model = CellModel { faults: cell.faults, ..free(ANY, ANY, ANY) };
         let initial = cell.init_states().remove(0);
         let mut moved = 0;
         for (pair, slot) in sharing(&cell) {
@@ -137,7 +151,7 @@ fn each_step_of_three_robots_and_two_slots_is_possible_in_the_model_of_any_cell(
 /// states that are not merged.
 #[test]
 fn each_step_without_merging_is_a_step_with_merging() {
-    for (name, cell) in cells(ANY) {
+    for (name, cell) in cells() {
         let merged = |state: &CellState| {
             let mut merged = state.clone();
             cell.simplify(&mut merged);
@@ -152,11 +166,14 @@ fn each_step_without_merging_is_a_step_with_merging() {
 
 #[test]
 fn no_slot_is_shared_in_long_random_schedules() {
-    for (name, cell) in cells(ANY) {
+    for (name, cell) in cells() {
         let (mut steps, mut grants) = (0, 0);
         walk(&cell, setting("ELBOWROOM_MODEL_STEPS").unwrap_or(100_000), |before, _, after| {
             steps += 1;
-            grants += cell.slots().filter(|s| before.arbiter.holder(*s).is_none() && after.arbiter.holder(*s).is_some()).count();
+            grants += cell
+                .slots()
+                .filter(|s| before.arbiter.holder(*s).is_none() && after.arbiter.holder(*s).is_some())
+                .count();
             assert!(cell.is_exclusive(after), "{name}: {after:#?}");
         });
         println!("{name}: {steps} random steps, {grants} grants");

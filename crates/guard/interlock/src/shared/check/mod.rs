@@ -29,6 +29,8 @@ const RING: [&[&str]; 3] =
 const SHARED: [&[&str]; 3] = [&["_.XX._"], &["_.XX._"], &["_..X._"]];
 /// Two robots go through the same two regions in the same order; a third robot needs only the second region.
 const PIPELINE: [&[&str]; 3] = [&["_.XX.__", "__.XX._"], &["_.XX.__", "__.XX._"], &["_______", "__.XX._"]];
+/// Two robots pass through two regions in opposite directions, and a third robot needs both at once.
+const CROSSING: [&[&str]; 3] = [&["_.XX.__", "__.XX._"], &["__.XX._", "_.XX.__"], &["_.XX.__", "_.XX.__"]];
 /// Two robots and three regions, one after the other and back.
 const CHAIN: [&[&str]; 2] = [&["_.X._____", "__.XX.___", "____.XX._"], &["____.XX._", "__.XX.___", "_.X._____"]];
 /// Like `OPPOSITE`, with wide warning zones: both robots wait while they move, outside the slots that they hold.
@@ -64,6 +66,18 @@ fn three_robots_that_declare_are_never_two_inside_and_always_able_to_finish() {
     holds_for("ring", &model(&RING).declared().faults(Faults::First));
     holds_for("shared", &model(&SHARED).declared().faults(Faults::First));
     holds_for("pipeline", &model(&PIPELINE).declared().faults(Faults::First));
+    holds_for("crossing", &model(&CROSSING).declared().faults(Faults::First));
+}
+
+/// Minutes: only with `ELBOWROOM_MODEL_SECONDS`.
+#[test]
+fn three_robots_and_two_regions_with_all_faults() {
+    if std::env::var_os("ELBOWROOM_MODEL_SECONDS").is_none() {
+        return;
+    }
+    for (name, programs) in [("pipeline, all", &PIPELINE), ("crossing, all", &CROSSING)] {
+        holds_for(name, &model(programs).declared().faults(Faults::All));
+    }
 }
 
 #[test]
