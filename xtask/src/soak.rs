@@ -82,9 +82,25 @@ const RUNS: [Run; 17] = [
     },
     Run {
         name: "model",
-        what: "the states of the interlock's protocol, half an hour per cell",
-        words: &["test", "--release", "-p", "elbowroom-interlock", "--lib", "model::", "--", "--nocapture"],
-        env: &[("ELBOWROOM_MODEL_STATES", "4000000000"), ("ELBOWROOM_MODEL_SECONDS", "1800")],
+        what: "the states of the interlocks' protocols, up to half an hour per cell, and 10 million random steps",
+        words: &[
+            "test",
+            "--release",
+            "-p",
+            "elbowroom-interlock",
+            "--lib",
+            "--",
+            "model::",
+            "check::",
+            "--nocapture",
+            "--test-threads=1",
+        ],
+        env: &[
+            ("ELBOWROOM_MODEL_STATES", "4000000000"),
+            ("ELBOWROOM_MODEL_SECONDS", "1800"),
+            ("ELBOWROOM_MODEL_PROJECTED", "1000000"),
+            ("ELBOWROOM_MODEL_STEPS", "10000000"),
+        ],
     },
     Run {
         name: "messages",

@@ -20,6 +20,22 @@ const SPACING: u64 = 4;
 /// Distance of such a number from the next one. The number after a start is another one.
 pub(super) const BELOW: u64 = 2;
 
+/// Forgets everything that is chosen anew in each step of a model of any cell.
+pub(super) fn forget_choices(state: &mut CellState) {
+    let other = state.other();
+    for arbiter in state.arbiters() {
+        arbiter.set_known(other, false, NOW);
+        arbiter.forget_grants_and_orders(other);
+    }
+    state.guards.iter_mut().for_each(|guard| guard.ask(false));
+    for message in state.to_arbiter.iter_mut().flatten() {
+        message.slots.iter_mut().for_each(|report| report.wants = false);
+    }
+    for answer in state.to_guard.iter_mut().flatten().flat_map(|message| &mut message.slots) {
+        (answer.release_requested, answer.halt) = (false, false);
+    }
+}
+
 /// Lets time pass: makes all stored times older.
 pub(super) fn pass(state: &mut CellState, step: Micros) {
     each_time(state, |time| *time = *time - step);

@@ -10,10 +10,11 @@ use std::time::{Duration, Instant};
 
 use stateright::Model;
 
+use super::CellModel;
+use super::action::Action;
 use super::codec::Codec;
 use super::mixer::Mixer;
 use super::state::CellState;
-use super::{Action, CellModel};
 
 /// Explorations that take longer report their progress.
 const REPORTED: Duration = Duration::from_secs(20);

@@ -18,51 +18,13 @@
 //! So each step of a cell, seen from two of its robots and one slot, is none, one or a few steps of this model.
 //! `projection` checks this for each step of long schedules of larger cells.
 
+use super::CellModel;
+use super::action::{ArbiterStep, Next, Report};
 use super::state::{CellState, NOW};
-use super::{ArbiterStep, CellModel};
 use crate::{Boot, Occupancy, RobotSlot, SlotReport, StateMessage, Token};
-
-/// The robot that the arbiter considers for a grant in its next step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Next {
-    /// The arbiter's own choice, in models without other robots; otherwise no robot.
-    Undecided,
-    Robot(RobotSlot),
-    /// A robot beyond the model.
-    Other,
-}
-
-/// What a robot beyond the model reports.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Report {
-    /// It is outside, and gives up the slot.
-    Outside,
-    Inside,
-}
 
 const UNDECIDED: &[Next] = &[Next::Undecided];
 const ANY: &[Next] = &[Next::Undecided, Next::Robot(RobotSlot(0)), Next::Robot(RobotSlot(1)), Next::Other];
-
-/// The robot beyond the model.
-fn other(state: &CellState) -> RobotSlot {
-    RobotSlot(state.guards.len())
-}
-
-/// Forgets everything that is chosen anew in each step.
-pub(super) fn forget(state: &mut CellState) {
-    let other = other(state);
-    for arbiter in state.arbiters() {
-        arbiter.set_known(other, false, NOW);
-        arbiter.forget_grants_and_orders(other);
-    }
-    state.guards.iter_mut().for_each(|guard| guard.ask(false));
-    for message in state.to_arbiter.iter_mut().flatten() {
-        message.slots.iter_mut().for_each(|report| report.wants = false);
-    }
-    for answer in state.to_guard.iter_mut().flatten().flat_map(|message| &mut message.slots) {
-        (answer.release_requested, answer.halt) = (false, false);
-    }
-}
 
 impl CellModel {
     /// The choices for a step of the arbiter that may free the slot if this robot holds it.
@@ -76,7 +38,7 @@ impl CellModel {
         if !self.is_free {
             return;
         }
-        let other = other(state);
+        let other = state.other();
         let waiting = match next {
             Next::Undecided => None,
             Next::Robot(robot) => Some(robot),
@@ -89,7 +51,7 @@ impl CellModel {
 
     pub(super) fn steps_of_others(&self, state: &CellState, steps: &mut Vec<ArbiterStep>) {
         if self.is_free {
-            let nexts = self.nexts(state, Some(other(state)));
+            let nexts = self.nexts(state, Some(state.other()));
             steps.extend(nexts.iter().map(|next| ArbiterStep::Other(Report::Outside, *next)));
             steps.push(ArbiterStep::Other(Report::Inside, Next::Undecided));
             steps.extend(self.robots().map(ArbiterStep::Answer));
@@ -103,7 +65,7 @@ impl CellModel {
         let report = SlotReport { occupancy, wants: next == Next::Other, token: None, released };
         let (boot, arbiter) = (Boot(1), state.arbiter.boot());
         let message =
-            StateMessage { robot: other(state), boot, sequence: 1, checksum: 0, arbiter, slots: vec![report] };
+            StateMessage { robot: state.other(), boot, sequence: 1, checksum: 0, arbiter, slots: vec![report] };
         let replies = state.arbiter.receive(&message, NOW).replies;
         self.reply(state, replies);
     }

@@ -7,9 +7,11 @@
 //! same are one state ([`canonical`]), so the number of states is finite, and small cells can be explored
 //! completely.
 
+mod action;
 mod canonical;
 mod checks;
 pub(crate) mod codec;
+mod encoding;
 mod explorer;
 mod free;
 mod mixer;
@@ -23,7 +25,7 @@ use stateright::{Model, Property};
 use crate::{
     Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotSettings, RobotSlot, SlotId, StateMessage, Token,
 };
-use free::Next;
+use action::{Action, ArbiterStep, Next, Step};
 use programs::Program;
 use state::{CellState, FaultBudget, NOW, RobotState};
 
@@ -88,48 +90,6 @@ struct CellModel {
     classes: Vec<usize>,
     /// True if the cell has any number of other robots and slots ([`free`]).
     is_free: bool,
-}
-
-/// What a robot does in a tick.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Step {
-    /// The robot completes what the last tick let it do.
-    Remain,
-    /// The tick finds the robot at the next place, for which it needs no grant.
-    Advance,
-    /// The tick lets the robot enter the next place, where the next tick will find it.
-    Enter,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Action {
-    Tick(RobotSlot, Step),
-    /// The guard sends a message.
-    Send(RobotSlot),
-    /// The guard sends a message after it was asked to give up its grants.
-    SendAsked(RobotSlot),
-    ToGuard(RobotSlot, usize),
-    TimePasses,
-    CrashGuard(RobotSlot, Boot),
-    Arbiter(ArbiterStep),
-    /// A step of the other arbiter.
-    SecondArbiter(ArbiterStep),
-    /// Another arbiter starts, while the first one continues.
-    StartSecondArbiter(Boot),
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum ArbiterStep {
-    /// The arbiter receives a message, which may be delivered again.
-    Receive(RobotSlot, usize, Next),
-    Clear(RobotSlot, Next),
-    /// The arbiter starts again with this number.
-    Crash(Boot),
-    TakeBack(SlotId),
-    /// The arbiter receives a message of a robot beyond the model.
-    Other(free::Report, Next),
-    /// The arbiter sends an answer because of a slot beyond the model.
-    Answer(RobotSlot),
 }
 
 impl CellModel {
@@ -287,7 +247,7 @@ impl CellModel {
 
     fn simplify(&self, state: &mut CellState) {
         if self.is_free {
-            free::forget(state);
+            canonical::forget_choices(state);
         }
         canonical::canonicalize(state, self.clock.oldest(), &self.classes);
     }

@@ -5,11 +5,11 @@ use std::hash::Hasher;
 
 use stateright::Model;
 
+use super::CellModel;
+use super::action::{Action, ArbiterStep, Next, Report, Step};
 use super::checks::{ANY, CROSSING_AND_ONE, THREE_AND_TWO, free, setting, with};
-use super::free::{Next, Report};
 use super::mixer::Mixer;
 use super::state::{CellState, FaultBudget, RobotState};
-use super::{Action, ArbiterStep, CellModel, Step};
 use crate::{Occupancy, RobotSlot, SlotId};
 
 /// Steps of the suite, per cell.

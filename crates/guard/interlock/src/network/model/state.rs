@@ -60,6 +60,11 @@ impl CellState {
         std::iter::once(&mut self.arbiter).chain(&mut self.second)
     }
 
+    /// The robot beyond a model of any cell.
+    pub(super) fn other(&self) -> RobotSlot {
+        RobotSlot(self.guards.len())
+    }
+
     /// Makes the second arbiter the first one, if there is one.
     pub(super) fn swap_arbiters(&mut self) {
         if let Some(second) = &mut self.second {
