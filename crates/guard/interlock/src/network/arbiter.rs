@@ -145,7 +145,8 @@ impl Arbiter {
     }
 
     /// Declares that a silent robot is at rest outside all regions, as seen by the integrator. Its slots become free,
-    /// and other robots are granted slots without it until it sends a message again.
+    /// and other robots are granted slots without it until it sends a message again. No other arbiter of the cell may run
+    /// then: it could still confirm a grant of this robot.
     ///
     /// # Errors
     /// The time for which the robot must still be silent.
