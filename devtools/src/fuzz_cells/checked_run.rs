@@ -17,14 +17,20 @@ pub struct CheckedRun {
     pub simulated_s: f64,
 }
 
-/// Runs a cell with these faults of its input; `repeat` is the number of passes, as in `run --repeat`.
-pub fn run(cell: &Cell, faults: &[InputFault], repeat: u32) -> Result<CheckedRun, String> {
-    run_and_judge(cell, faults, repeat, |_, _| ())
+/// Runs a cell of this text with these faults of its input; `repeat` is the number of passes, as in `run --repeat`.
+pub fn run(cell: &Cell, text: &str, faults: &[InputFault], repeat: u32) -> Result<CheckedRun, String> {
+    run_and_judge(cell, faults, repeat, |recording, findings| {
+        oracle::as_written::check(text, cell, recording, findings);
+    })
 }
 
-/// Like [`run`], for a cell that is not written to a file yet: whether its recordings are played as written is judged too.
+/// Like [`run`], for a cell that is not written to a file yet: whether its recordings are played as written, and its scenes
+/// are where they were written, is judged too.
 pub fn run_spec(spec: &CellSpec, places: &Places<'_>) -> Result<CheckedRun, String> {
-    run_and_judge(&spec.parse(places.cells)?, &spec.faults, spec.repeat, |recording, findings| {
+    let cell = spec.parse(places.cells)?;
+    run_and_judge(&cell, &spec.faults, spec.repeat, |recording, findings| {
+        oracle::as_written::check(&spec.to_toml(), &cell, recording, findings);
+        oracle::as_written::check_scenes(spec, &cell, findings);
         oracle::recorded::check(spec, recording, findings);
     })
 }

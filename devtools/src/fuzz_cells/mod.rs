@@ -25,6 +25,8 @@ use xtask::Failure;
 
 /// A mesh for regions: a corner of two plates, 0.3 m wide, closed and not convex.
 const CORNER: &str = include_str!("corner.obj");
+/// A model of a robot with two joints, and the file of its joints.
+const ARM: [(&str, &str); 2] = [("arm.wrl", include_str!("arm.wrl")), ("arm_axes.toml", include_str!("arm_axes.toml"))];
 /// Largest number of failing cells written as files, per kind.
 const WRITTEN: usize = 20;
 
@@ -110,17 +112,20 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     let data = xtask::call::data_folder(root, None);
     let places = Places { cells: &cells, root, data: data.is_dir().then_some(&data) };
     let summaries: Vec<Summary> = options.kinds.iter().map(|kind| fuzz(*kind, options, &places)).collect();
-    if options.json {
-        println!("{}", summary::json(options.seed, &summaries));
-    } else {
-        summary::print(&summaries);
-    }
     let mut coverage = Coverage::default();
     for summary in &summaries {
         coverage.merge(&summary.coverage);
     }
-    if options.keys {
-        coverage.print();
+    let table = options.keys.then(|| coverage.write_table(&root.join("target"))).transpose()?;
+    if options.json {
+        let keys = table.as_ref().map(|file| (&coverage, file.as_path()));
+        println!("{}", summary::json(options.seed, &summaries, keys));
+    } else {
+        summary::print(&summaries);
+        if let Some(file) = &table {
+            coverage.print();
+            println!("{}\n{}", coverage.summary(), file.display());
+        }
     }
     if options.count.is_none() {
         coverage.check().map_err(Failure::Check)?;
@@ -132,7 +137,9 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
 /// Makes the folder of the cells, with the files that they name.
 pub fn write_cell_files(root: &Path) -> Result<PathBuf, String> {
     let cells = root.join("target/fuzz-cells");
-    let written = std::fs::create_dir_all(&cells).and_then(|()| std::fs::write(cells.join("corner.obj"), CORNER));
+    let files = ARM.into_iter().chain([("corner.obj", CORNER), ("rules.toml", elbowroom_avoidance::DEFAULT_RULES)]);
+    let write = || files.into_iter().try_for_each(|(name, text)| std::fs::write(cells.join(name), text));
+    let written = std::fs::create_dir_all(&cells).and_then(|()| write());
     written.map_err(|e| format!("{}: {e}", cells.display()))?;
     Ok(cells)
 }
@@ -152,7 +159,7 @@ fn replay(file: &Path) -> Result<(), Failure> {
     let cell = Cell::parse(file, &text).map_err(|e| e.to_string())?;
     let repeat = spec::read_repeat(&text)?;
     let findings =
-        checked_run::run(&cell, &faults, repeat).map_err(|e| format!("{}: {e}", file.display()))?.findings.list;
+        checked_run::run(&cell, &text, &faults, repeat).map_err(|e| format!("{}: {e}", file.display()))?.findings.list;
     for finding in &findings {
         println!("{}", summary::in_words(finding, &cell));
     }
@@ -203,7 +210,7 @@ fn fuzz(kind: Kind, options: &Options, places: &Places<'_>) -> Summary {
                     summary.add(&run);
                     summary.coverage.add(&keys);
                 }
-                Err(e) => summary.refuse(&e),
+                Err(e) => summary.refuse(case, &e),
             }
             if printed.elapsed() > Duration::from_secs(2) && !options.json {
                 printed = Instant::now();

@@ -1,7 +1,7 @@
 //! Results of the fuzzer, in a table or as JSON.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use elbowroom_cell::Cell;
@@ -18,6 +18,8 @@ pub struct Summary {
     pub cells: usize,
     /// Numbers of cells that the cell file or the programs refuse, by reason.
     refused: BTreeMap<String, usize>,
+    /// Number of refused cells whose reason is not known.
+    refused_for_other_reasons: usize,
     robots: usize,
     finished: usize,
     slowed: usize,
@@ -55,48 +57,65 @@ impl FailingCells {
     }
 }
 
-/// What findings are called in tables, and in JSON with underscores.
-const NAMES: [&str; 15] = [
-    "entries",
-    "broken promises",
-    "two inside",
-    "silent deadlocks",
-    "too hard",
-    "too near",
-    "energy made",
-    "cooperating",
-    "tilted",
-    "wrong cells",
-    "off entry",
-    "misread limits",
-    "slowed mechanisms",
-    "zones and outputs",
-    "off recordings",
+/// Makes the list of the names of findings, and the function that says which one a finding has.
+macro_rules! names {
+    ($($name:literal: $($variant:ident)|+,)*) => {
+        /// What findings are called in tables, and in JSON with underscores.
+        const NAMES: &[&str] = &[$($name),*];
+
+        /// The name of a finding.
+        fn name(finding: &Finding) -> &'static str {
+            match finding {
+                $($(Finding::$variant { .. })|+ => $name,)*
+            }
+        }
+    };
+}
+
+names! {
+    "entries": Entry,
+    "broken promises": Excluded,
+    "two inside": TwoInside,
+    "silent deadlocks": SilentDeadlock,
+    "too hard": TooHard,
+    "too fast": TooFast,
+    "too near": TooNear,
+    "touched": Touched,
+    "energy made": EnergyMade,
+    "cooperating": NotHeld | OffPath | WrongView,
+    "tilted": Tilted,
+    "wrong cells": WrongCell,
+    "off entry": OffEntry,
+    "misread": Misread,
+    "misread limits": MisreadLimits,
+    "off goal": OffGoal,
+    "slowed mechanisms": Slowed,
+    "zones and outputs": TooFastInZone | OutputOff,
+    "off recordings": OffRecording,
+}
+
+/// Why a cell or one of its programs may be refused: messages have one of these parts. Any other refusal is a mistake of
+/// the generator or of the reader.
+const KNOWN_REFUSALS: &[&str] = &[
+    // The start or a target of a real robot may be beyond its limits.
+    "brings joint",
+    // A line may leave the reach.
+    "cannot be followed",
+    // The flange of a robot may be a link that nothing moves.
+    "guards nothing of robot",
+    // No grid is for a mechanism, and it makes no linear moves.
+    "which is a mechanism",
+    "is a step of the mechanism",
+    // A map does not know the regions that its robot must go around.
+    "the path through free cells is not proven free",
+    // A guided tool, or a planned move, may begin or end at an object.
+    "the tool starts",
+    "the start of robot",
+    "the goal of robot",
 ];
 
-/// The name of a finding.
-fn name(finding: &Finding) -> &'static str {
-    match finding {
-        Finding::Entry { .. } => "entries",
-        Finding::Excluded { .. } => "broken promises",
-        Finding::TwoInside { .. } => "two inside",
-        Finding::SilentDeadlock { .. } => "silent deadlocks",
-        Finding::TooHard { .. } => "too hard",
-        Finding::TooNear { .. } => "too near",
-        Finding::EnergyMade { .. } => "energy made",
-        Finding::NotHeld { .. }
-        | Finding::OffPath { .. }
-        | Finding::WrongView { .. }
-        | Finding::Touched { .. }
-        | Finding::TooFast { .. } => "cooperating",
-        Finding::Tilted { .. } => "tilted",
-        Finding::WrongCell { .. } => "wrong cells",
-        Finding::OffEntry { .. } => "off entry",
-        Finding::MisreadLimits { .. } => "misread limits",
-        Finding::Slowed { .. } => "slowed mechanisms",
-        Finding::TooFastInZone { .. } | Finding::OutputOff { .. } => "zones and outputs",
-        Finding::OffRecording { .. } => "off recordings",
-    }
+fn is_known_refusal(why: &str) -> bool {
+    KNOWN_REFUSALS.iter().any(|part| why.contains(part))
 }
 
 impl Summary {
@@ -104,9 +123,9 @@ impl Summary {
         Self { kind, ..Self::default() }
     }
 
-    /// Number of cells with findings.
+    /// Number of cells with findings, and of those that are refused for a reason that is not known.
     pub fn failed(&self) -> usize {
-        self.failing.all
+        self.failing.all + self.refused_for_other_reasons
     }
 
     pub(super) fn add(&mut self, run: &CheckedRun) {
@@ -123,9 +142,15 @@ impl Summary {
         self.failing.add(&o.list);
     }
 
-    pub fn refuse(&mut self, why: &str) {
-        // Without its numbers and names a message stands for many.
-        let short: String = why.lines().next().unwrap_or("").chars().filter(|c| !c.is_ascii_digit()).take(90).collect();
+    pub fn refuse(&mut self, case: u64, why: &str) {
+        let is_known = is_known_refusal(why);
+        self.refused_for_other_reasons += usize::from(!is_known);
+        // Without folders, numbers and names a message stands for many.
+        let message = why.lines().next().unwrap_or("");
+        let message = message.split_once("fuzz.toml:").map_or(message, |(_, message)| message);
+        let shown = if is_known { 90 } else { 400 };
+        let short: String = message.chars().filter(|c| !c.is_ascii_digit()).take(shown).collect();
+        let short = if is_known { short } else { format!("not known, as of case {case}: {short}") };
         *self.refused.entry(short).or_default() += 1;
     }
 
@@ -155,7 +180,7 @@ impl Summary {
             ("unforeseen", self.unforeseen.to_string()),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ];
-        rows.extend(NAMES.map(|name| (name, self.failing.with(name).to_string())));
+        rows.extend(NAMES.iter().map(|name| (*name, self.failing.with(name).to_string())));
         rows
     }
 }
@@ -179,8 +204,8 @@ pub fn print(summaries: &[Summary]) {
     }
 }
 
-/// Formats one line of JSON.
-pub fn json(seed: u64, summaries: &[Summary]) -> String {
+/// Formats one line of JSON; with keys it has their pairs and the file of their table.
+pub fn json(seed: u64, summaries: &[Summary], keys: Option<(&Coverage, &Path)>) -> String {
     let kind = |s: &Summary| {
         let mut counts = serde_json::Map::new();
         for name in NAMES {
@@ -190,6 +215,7 @@ pub fn json(seed: u64, summaries: &[Summary]) -> String {
             "kind": s.kind,
             "cells": s.cells,
             "refused": s.refused.values().sum::<usize>(),
+            "refused_for_other_reasons": s.refused_for_other_reasons,
             "robots": s.robots,
             "finished": s.finished,
             "slowed": s.slowed,
@@ -203,7 +229,12 @@ pub fn json(seed: u64, summaries: &[Summary]) -> String {
         of_kind.as_object_mut().expect("it is an object").append(&mut counts);
         of_kind
     };
-    serde_json::json!({ "seed": seed, "kinds": summaries.iter().map(kind).collect::<Vec<_>>() }).to_string()
+    let mut all = serde_json::json!({ "seed": seed, "kinds": summaries.iter().map(kind).collect::<Vec<_>>() });
+    if let Some((coverage, table)) = keys {
+        let (seen, possible) = coverage.pairs_of_keys();
+        all["keys"] = serde_json::json!({ "pairs": seen, "possible_pairs": possible, "table": table });
+    }
+    all.to_string()
 }
 
 /// Formats a finding as a sentence.
@@ -286,6 +317,10 @@ fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
             format!("robot {} is not on the path of its recording at {t_s:.4} s", robot(r))
         }
         Finding::Slowed { robot: r, t_s } => format!("mechanism {} was slowed down at {t_s:.4} s", robot(r)),
+        Finding::Misread { table, off } => format!("{table}: read otherwise than the file states, by {off:.9}"),
+        Finding::OffGoal { robot: r, t_s, off } => {
+            format!("robot {} is {off:.9} (m, rad) off the goal of its move at {t_s:.4} s", robot(r))
+        }
         Finding::MisreadLimits { robot: r, joint, t_s, stopped } => format!(
             "robot {}: a reading of joint {joint} {} at {t_s:.4} s",
             robot(r),

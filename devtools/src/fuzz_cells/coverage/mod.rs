@@ -1,12 +1,15 @@
 //! Which keys of a cell file random cells have, and which tables together: a promise holds only where it was tried.
 
+mod named_pairs;
 mod places;
+mod table;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use elbowroom_cell::key_reference;
 use toml::{Table, Value};
 
+use named_pairs::{Feature, NAMED_PAIRS};
 use places::{PLACES, UNTRIED};
 
 /// A key: the title of the list that it is in, and its name.
@@ -15,18 +18,20 @@ type Key = (&'static str, String);
 /// The keys of one cell file.
 #[derive(Debug, Default)]
 pub struct CellKeys {
-    keys: BTreeSet<Key>,
-    tables: BTreeSet<String>,
+    /// Indices in the list of known keys.
+    keys: BTreeSet<usize>,
+    features: BTreeSet<Feature>,
 }
 
 /// The keys of many cell files.
 #[derive(Debug, Default)]
 pub struct Coverage {
     files: usize,
-    /// Number of files that have each key.
-    keys: BTreeMap<Key, usize>,
-    /// Number of files that have two tables.
-    pairs: BTreeMap<(String, String), usize>,
+    /// Number of files that have two keys, by their indices in the list of known keys, the lower one first; those that have
+    /// one key are at its index twice.
+    pairs: BTreeMap<(usize, usize), usize>,
+    /// Number of files that have two features, by their indices in the list of named pairs.
+    named: BTreeMap<usize, usize>,
 }
 
 impl CellKeys {
@@ -35,12 +40,12 @@ impl CellKeys {
         let Ok(table) = text.parse::<Table>() else { return Self::default() };
         let mut paths = BTreeSet::new();
         walk(&table, "", &mut paths);
-        let is_there = |(title, name): &Key| {
+        let is_there = |(_, (title, name)): &(usize, Key)| {
             let places = PLACES.iter().filter(|(of, _)| of == title).flat_map(|(_, places)| *places);
             places.map(|place| joined(place, name)).any(|path| paths.contains(&path))
         };
-        let tables = table.iter().filter(|(_, value)| value.is_table()).map(|(name, _)| name.clone());
-        Self { keys: known_keys().into_iter().filter(is_there).collect(), tables: tables.collect() }
+        let keys = known_keys().into_iter().enumerate().filter(is_there).map(|(index, _)| index);
+        Self { keys: keys.collect(), features: named_pairs::features(text, &table, &paths) }
     }
 }
 
@@ -48,12 +53,14 @@ impl Coverage {
     /// Counts the keys of a file.
     pub fn add(&mut self, file: &CellKeys) {
         self.files += 1;
-        for key in &file.keys {
-            *self.keys.entry(key.clone()).or_default() += 1;
+        for a in &file.keys {
+            for b in file.keys.range(a..) {
+                *self.pairs.entry((*a, *b)).or_default() += 1;
+            }
         }
-        for (index, a) in file.tables.iter().enumerate() {
-            for b in file.tables.iter().skip(index + 1) {
-                *self.pairs.entry((a.clone(), b.clone())).or_default() += 1;
+        for (index, [a, b]) in NAMED_PAIRS.iter().enumerate() {
+            if file.features.contains(a) && file.features.contains(b) {
+                *self.named.entry(index).or_default() += 1;
             }
         }
     }
@@ -61,27 +68,34 @@ impl Coverage {
     /// Counts the keys of other files too.
     pub fn merge(&mut self, other: &Self) {
         self.files += other.files;
-        for (key, count) in &other.keys {
-            *self.keys.entry(key.clone()).or_default() += count;
-        }
         for (pair, count) in &other.pairs {
-            *self.pairs.entry(pair.clone()).or_default() += count;
+            *self.pairs.entry(*pair).or_default() += count;
+        }
+        for (pair, count) in &other.named {
+            *self.named.entry(*pair).or_default() += count;
         }
     }
 
-    /// Checks that every key was tried that is not in the list of those that are not, and none of these.
+    /// Number of files that have a key, by its index.
+    fn with(&self, key: usize) -> usize {
+        self.pairs.get(&(key, key)).copied().unwrap_or(0)
+    }
+
+    /// Checks that every key was tried that is not in the list of those that are not, none of these, and that the named
+    /// pairs of features were tried together.
     ///
     /// # Errors
     /// The keys, and what to do.
     pub fn check(&self) -> Result<(), String> {
-        let missing: BTreeSet<Key> = known_keys().into_iter().filter(|key| !self.keys.contains_key(key)).collect();
+        let all = known_keys().into_iter().enumerate();
+        let missing: BTreeSet<Key> = all.filter(|(index, _)| self.with(*index) == 0).map(|(_, key)| key).collect();
         let untried = untried();
         let list = |keys: Vec<&Key>| -> Vec<String> {
             keys.iter().map(|(title, name)| format!("\n  {title}: {name}")).collect()
         };
         let (new, tried) = (list(missing.difference(&untried).collect()), list(untried.difference(&missing).collect()));
         match (new.is_empty(), tried.is_empty()) {
-            (true, true) => Ok(()),
+            (true, true) => self.check_named_pairs(),
             (false, _) => {
                 Err(format!("no random cell has these keys: generate them, and teach the oracle{}", new.concat()))
             }
@@ -89,15 +103,24 @@ impl Coverage {
         }
     }
 
-    /// Prints how many files have each key, and each pair of tables.
+    fn check_named_pairs(&self) -> Result<(), String> {
+        let is_missing = |(index, _): &(usize, &[Feature; 2])| !self.named.contains_key(index);
+        let missing = NAMED_PAIRS.iter().enumerate().filter(is_missing);
+        let missing: Vec<String> = missing.map(|(_, [a, b])| format!("\n  {a:?} with {b:?}")).collect();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        Err(format!("no random cell has these features together: generate them{}", missing.concat()))
+    }
+
+    /// Prints how many files have each key, and the named pairs of features.
     pub fn print(&self) {
         println!("{} cells", self.files);
-        for key in known_keys() {
-            let count = self.keys.get(&key).copied().unwrap_or(0);
-            println!("{count:6}  {}: {}", key.0, key.1);
+        for (index, (title, name)) in known_keys().into_iter().enumerate() {
+            println!("{:6}  {title}: {name}", self.with(index));
         }
-        for ((a, b), count) in &self.pairs {
-            println!("{count:6}  [{a}] with [{b}]");
+        for (index, [a, b]) in NAMED_PAIRS.iter().enumerate() {
+            println!("{:6}  {a:?} with {b:?}", self.named.get(&index).copied().unwrap_or(0));
         }
     }
 }
@@ -188,7 +211,8 @@ mod tests {
             [program.arm]
             steps = [{ move = \"planned\", to = { at = [0, 0, 1] } }]";
         let found = CellKeys::of(text);
-        let has = |title: &'static str, name: &str| found.keys.contains(&(title, name.to_owned()));
+        let all = known_keys();
+        let has = |title: &str, name: &str| found.keys.iter().any(|key| (all[*key].0, &*all[*key].1) == (title, name));
         assert!(has("keys of the file", "version") && has("keys of the file", "robot"));
         assert!(has("keys of a row of `dh`", "a") && has("keys of a row of `dh`", "kind"));
         assert!(
@@ -200,10 +224,16 @@ mod tests {
                 && !has("keys of [object.NAME]", "shape")
                 && !has("keys of a pose", "rpy")
         );
+        assert_eq!(
+            found.features,
+            BTreeSet::from([Feature::Tool, Feature::Region, Feature::MovingRegion, Feature::Carrier])
+        );
         let mut coverage = Coverage::default();
         coverage.add(&found);
         coverage.merge(&Coverage::default());
-        assert_eq!(coverage.pairs[&("region".to_owned(), "robot".to_owned())], 1);
+        let [version, robot] = ["version", "robot"].map(|name| all.iter().position(|key| key.1 == name).unwrap());
+        assert_eq!(coverage.pairs[&(version.min(robot), version.max(robot))], 1);
+        assert_eq!(coverage.named.len(), 1);
         assert!(coverage.check().unwrap_err().contains("keys of [grid.NAME]: cells"));
     }
 }

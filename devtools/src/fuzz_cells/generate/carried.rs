@@ -21,7 +21,8 @@ const TRIES: usize = 4;
 pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     let mut spec = CellSpec { max_s: 5.0, ..settings(random) };
     spec.robots.push(if random.percent(75) { rail::slide(random) } else { robot::any(random, places) });
-    match random.whole(0, 9) {
+    let what = random.whole(0, 9);
+    match if random.rare(11, 12, 0).is_some() { 9 } else { what } {
         0..=5 => {
             for index in 0..if random.percent(80) { 1 } else { 2 } {
                 on_an_object(&mut spec, places.cells, index, random);

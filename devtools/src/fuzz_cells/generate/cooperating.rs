@@ -70,7 +70,7 @@ fn try_cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
         ..Default::default()
     };
     guidance.tables.push(grasps(count, [width, length, gap_m], random));
-    if random.percent(50) {
+    if random.first_or_percent(50) {
         _ = writeln!(guidance.virtual_robot, "seen_by = \"eye\"\nhidden = {}", random.whole(2, 80));
         guidance.tables.push(camera(bar.translation, random));
     }
@@ -83,8 +83,11 @@ fn try_cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
         ..ObjectSpec::default()
     });
     spec.guidance = Some(guidance);
-    if random.percent(30) {
-        let region = region::at(&spec, 0, on_the_way.map(rounded), "g0", random);
+    if random.first_or_percent(30) {
+        let mut region = region::at(&spec, 0, on_the_way.map(rounded), "g0", random);
+        if random.in_turn(2) == 0 {
+            (region.kind, region.warning, region.robots) = ("exchange", region.warning.max(0.05), Vec::new());
+        }
         let with = CellSpec { regions: vec![region], ..spec.clone() };
         if region::starts_outside(&with, places.cells) {
             spec = with;
@@ -98,7 +101,7 @@ fn keys(count: usize, gap_m: f64, random: &mut Random) -> String {
     let mut keys =
         format!("robots = [{}]\nwork_piece = \"{BAR}\"\nholder = \"r0\"\ngap = {gap_m}\n", robots.join(", "));
     let mut add = |key: &str, percent: u32, low: f64, high: f64| {
-        if random.percent(percent) {
+        if random.first_or_percent(percent) {
             _ = writeln!(keys, "{key} = {}", random.scaled(low, high));
         }
     };
@@ -117,9 +120,14 @@ fn camera(bar: Vec3, random: &mut Random) -> String {
     let along = vector(random, 0.1) - away;
     let rpy = Rotation::from_z(along * (1.0 / along.length())).to_rpy().map(rounded);
     let at = (bar + away).to_array().map(rounded);
-    let distortion = if random.percent(30) { "distortion = [-0.1, 0.02]\n" } else { "" };
+    let distortion = if random.first_or_percent(30) { "distortion = [-0.1, 0.02]\n" } else { "" };
+    let centre = match random.in_turn(3) {
+        0 => "centre_px = [300.5, 250]\n",
+        1 => "center_px = [330, 220.5]\n",
+        _ => "",
+    };
     format!(
-        "[camera.eye]\nsize = [640, 480]\nfocal_px = {}\n{distortion}pose = {{ at = {}, rpy = {} }}\n",
+        "[camera.eye]\nsize = [640, 480]\nfocal_px = {}\n{distortion}{centre}pose = {{ at = {}, rpy = {} }}\n",
         random.between(300.0, 900.0),
         list(&at),
         list(&rpy)

@@ -65,6 +65,7 @@ fn region(random: &mut Random, index: usize, center: Vector) -> RegionSpec {
         temporary: false,
         is_fence: false,
         follow: None,
+        limits: None,
     }
 }
 
@@ -113,7 +114,7 @@ fn carriage(random: &mut Random, centers: &[Vector]) -> RobotSpec {
         steps.push(StepSpec::Joint { to: vec![-half], percent: 100.0 });
     }
     RobotSpec {
-        model: Model::Dh { rows: vec![row], links: vec![balls] },
+        model: Model::Dh { rows: vec![row], links: vec![balls], has_names: false },
         at,
         rpy: [0.0, rounded(TAU / 4.0), rounded(along)],
         start: vec![from],
@@ -125,5 +126,7 @@ fn carriage(random: &mut Random, centers: &[Vector]) -> RobotSpec {
         program: ProgramSpec::of_steps(100.0, steps),
         evades: Vec::new(),
         is_mechanism: false,
+        keys: Vec::new(),
+        starts_at_home: false,
     }
 }

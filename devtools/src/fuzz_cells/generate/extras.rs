@@ -15,7 +15,7 @@ pub fn add(spec: &mut CellSpec, random: &mut Random) {
         for line in lines(&parts, own, has_faults, random) {
             let key = line.split_inclusive(" =").next().unwrap_or_default();
             if !own.lines().any(|line| line.starts_with(key)) {
-                spec.extras.push(ExtraKey { table: table.to_owned(), line });
+                spec.extras.keys.push(ExtraKey { table: table.to_owned(), line });
             }
         }
     }
@@ -30,7 +30,7 @@ fn speed_zones(spec: &mut CellSpec, random: &mut Random) {
         if random.percent(8) {
             region.kind = "monitored";
             let line = format!("slow_to = {}", random.whole(5, 80));
-            spec.extras.push(ExtraKey { table: format!("region.{}", region.name), line });
+            spec.extras.keys.push(ExtraKey { table: format!("region.{}", region.name), line });
         }
     }
 }
@@ -75,7 +75,7 @@ fn lines(table: &[&str], own: &str, has_faults: bool, random: &mut Random) -> Ve
         ["virtual_robot", _] => {
             some(&mut lines, 30, random, |r| format!("stale_ms = {}", r.whole(200, 1000)));
         }
-        ["fixture", _] => some(&mut lines, 30, random, |_| "active = true".to_owned()),
+        ["fixture", _] if random.first_or_percent(30) => lines.push("active = true".to_owned()),
         _ => {}
     }
     lines
@@ -83,16 +83,31 @@ fn lines(table: &[&str], own: &str, has_faults: bool, random: &mut Random) -> Ve
 
 fn force(lines: &mut Vec<String>, own: &str, random: &mut Random) {
     let is = |law: &str| own.contains(&format!("law = \"{law}\""));
+    let is_first = random.is_first();
+    let mut some = |percent: u32, line: &dyn Fn(&mut Random) -> String| {
+        if random.percent(percent) || is_first {
+            lines.push(line(random));
+        }
+    };
     if is("admittance") || is("impedance") {
-        some(lines, 50, random, |r| format!("largest_force = {}", r.scaled(20.0, 300.0)));
+        some(50, &|r| format!("largest_force = {}", r.scaled(20.0, 300.0)));
     }
     if is("admittance") {
-        some(lines, 50, random, |r| format!("jerk = {}", r.scaled(50.0, 1000.0)));
+        some(50, &|r| format!("jerk = {}", r.scaled(50.0, 1000.0)));
     }
     if is("impedance") {
-        some(lines, 50, random, |r| format!("tank = {}", r.scaled(0.001, 0.05)));
-        some(lines, 30, random, |r| format!("device_damping = {}", r.scaled(5.0, 50.0)));
+        some(50, &|r| format!("tank = {}", r.scaled(0.001, 0.05)));
+        // The damping limits the stiffness at a tick.
+        let least = least_device_damping(own);
+        some(30, &|r| format!("device_damping = {}", least * r.scaled(1.05, 3.0)));
     }
+}
+
+/// Stiffness times half of the longest tick, and the damping, N·s/m.
+fn least_device_damping(own: &str) -> f64 {
+    let number =
+        |key: &str| own.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(" = ")?.parse::<f64>().ok());
+    number("stiffness").unwrap_or(800.0) * 0.004 + number("damping").unwrap_or(0.0) + 1.0
 }
 
 fn avoidance(lines: &mut Vec<String>, random: &mut Random) {

@@ -6,9 +6,9 @@ use elbowroom_cell::Cell;
 use elbowroom_kinematics::ChainState;
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
-use super::region;
-use super::robot;
 use super::settings::{Places, settings};
+use super::shields::Side;
+use super::{rare, region, robot};
 use crate::fuzz_cells::oracle;
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{CellSpec, GuidanceSpec, HandRow, ObjectSpec, ProgramSpec, RobotSpec, list};
@@ -31,7 +31,10 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     let tool = tool_in_world(&cell, 0);
     for i in 0..random.whole(1, 3) {
         for _ in 0..TRIES {
-            let object = object(&format!("o{i}"), tool.translation, random);
+            let mut object = object(&format!("o{i}"), tool.translation, random);
+            if i == 0 && random.is_first() && !object.shape.contains("\"box\"") {
+                object.shape = "shape = \"box\"\nsize = [0.2, 0.25, 0.3]\n".to_owned();
+            }
             let mut with = spec.clone();
             with.objects.push(object);
             if with.parse(places.cells).is_ok_and(|cell| oracle::is_clear_at_start(&cell, 0.005)) {
@@ -40,6 +43,7 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
             }
         }
     }
+    rare::scene_at(&mut spec, tool.translation, places, random);
     let mut guidance = GuidanceSpec { rows: hand(tool, &spec.objects, random), ..GuidanceSpec::default() };
     guidance.operator = operator(random);
     tables(&mut guidance, &spec.objects, tool, random);
@@ -125,6 +129,9 @@ fn operator(random: &mut Random) -> String {
     if random.percent(40) {
         keys += "interpolation = \"linear\"\n";
     }
+    if random.first_or_percent(30) {
+        keys += "tool = \"tool\"\n";
+    }
     keys + "stale_ms = 150\n"
 }
 
@@ -167,11 +174,13 @@ pub fn hand(tool: Pose, objects: &[ObjectSpec], random: &mut Random) -> Vec<Hand
 
 /// Adds a shield around a box, a guide and forces to some cells.
 fn tables(guidance: &mut GuidanceSpec, objects: &[ObjectSpec], tool: Pose, random: &mut Random) {
-    let boxed = objects.iter().find(|o| o.shape.contains("\"box\"")).filter(|_| random.percent(35));
-    if let Some(table) = boxed.and_then(|object| shield(object, random)) {
+    let boxed = objects.iter().find(|o| o.shape.contains("\"box\"")).filter(|_| random.first_or_percent(35));
+    if let Some(side) = boxed.and_then(|object| Side::any(object, random)) {
+        let (table, file) = side.shield(random);
         guidance.tables.push(table);
+        guidance.shields.extend(file);
     }
-    if random.percent(30) {
+    if random.first_or_percent(30) {
         guidance.tables.push(guide(tool, random));
     }
     let other = match boxed {
@@ -181,7 +190,7 @@ fn tables(guidance: &mut GuidanceSpec, objects: &[ObjectSpec], tool: Pose, rando
             None => return,
         },
     };
-    if random.percent(50) {
+    if random.first_or_percent(50) {
         guidance.tables.push(force("soft", "r0/tool", other, &LAWS, random));
     }
     if let Some(object) = objects.last().filter(|_| random.percent(25)) {
@@ -203,29 +212,6 @@ fn switch_shield(guidance: &mut GuidanceSpec, random: &mut Random) {
     }
 }
 
-/// A hole in a random side of a box.
-fn shield(object: &ObjectSpec, random: &mut Random) -> Option<String> {
-    let size: Vec<f64> =
-        object.shape.split(['[', ']']).nth(1)?.split(',').filter_map(|v| v.trim().parse().ok()).collect();
-    let side = random.whole(0, 2);
-    let mut out = [0.0; 3];
-    out[side] = random.one(&[-1.0, 1.0]);
-    let [roll, pitch, yaw] = object.rpy;
-    let rotation = Rotation::from_rpy(roll, pitch, yaw);
-    let out = rotation * Vec3::new(out[0], out[1], out[2]);
-    let at = Vec3::new(object.at[0], object.at[1], object.at[2]) + out * (0.5 * size[side]);
-    let tolerance = rounded(size.iter().copied().fold(0.0, f64::max) / 60.0).max(0.002);
-    let (width, depth) = (random.between(0.02, 0.06), random.between(0.0, 0.5 * size[side]));
-    let (offset, flare) = (random.between(0.002, 0.02), random.between(0.0, 0.6));
-    Some(format!(
-        "[fixture.shield]\nprotects = \"{}\"\ntarget = {{ drill = {{ at = {}, axis = {}, depth = {depth} }} }}\n\
-         width = {width}\noffset = {offset}\nflare = {flare}\ntolerance = {tolerance}\ntool = \"r0\"\n",
-        object.name,
-        list(&at.to_array()),
-        list(&(-out).to_array())
-    ))
-}
-
 fn guide(tool: Pose, random: &mut Random) -> String {
     let at = tool.translation;
     let near = |random: &mut Random, most: f64| list(&(at + vector(random, most)).to_array());
@@ -234,7 +220,7 @@ fn guide(tool: Pose, random: &mut Random) -> String {
         let points: Vec<String> = (0..random.whole(2, 6)).map(|_| near(random, 0.15)).collect();
         format!("points = [{}]\n", points.join(", "))
     };
-    match random.whole(0, 5) {
+    match random.in_turn(6) {
         0 => format!("{head}guide = \"line\"\n{}", line(random)),
         1 => format!("{head}guide = \"tube\"\n{}radius = {}\n", line(random), random.scaled(0.002, 0.05)),
         2 => format!("{head}guide = \"plane\"\nat = {}\nnormal = {}\n", near(random, 0.02), list(&random.vector(1.0))),
@@ -250,7 +236,7 @@ fn guide(tool: Pose, random: &mut Random) -> String {
 
 /// A point of entry on the shaft of a tool, before or beyond its tip, or up to 20 mm beside it.
 fn entry(tool: Pose, random: &mut Random) -> String {
-    let axis = if random.percent(60) { Vec3::Z } else { vector(random, 1.0) };
+    let axis = if random.percent(60) && !random.is_first() { Vec3::Z } else { vector(random, 1.0) };
     let shaft = tool.rotation * axis.try_normalize().unwrap_or(Vec3::Z);
     let depth_m = random.between(-0.1, 0.15);
     let beside = if random.percent(20) { vector(random, 0.02) } else { Vec3::ZERO };
@@ -258,10 +244,10 @@ fn entry(tool: Pose, random: &mut Random) -> String {
     if axis != Vec3::Z {
         _ = writeln!(keys, "axis = {}", list(&axis.to_array()));
     }
-    if random.percent(25) {
+    if random.first_or_percent(25) {
         _ = writeln!(keys, "radius = {}", random.scaled(0.0002, 0.01));
     }
-    if random.percent(40) {
+    if random.first_or_percent(40) {
         let least_m = random.between(-0.05, 0.05);
         _ = writeln!(keys, "depth = [{least_m}, {}]", least_m + random.between(0.005, 0.1));
     }
@@ -269,20 +255,20 @@ fn entry(tool: Pose, random: &mut Random) -> String {
 }
 
 fn force(name: &str, own: &str, other: &str, laws: &[&str], random: &mut Random) -> String {
-    let law = random.one(laws);
+    let law = laws[random.in_turn(laws.len())];
     let is_response = matches!(law, "admittance" | "impedance");
     let mut t = format!("[force.{name}]\nbetween = [\"{own}\", \"{other}\"]\nlaw = \"{law}\"\n");
-    if !is_response || random.percent(50) {
+    if !is_response || random.first_or_percent(50) {
         _ = writeln!(t, "range = {}", random.scaled(0.002, 0.1));
     }
     _ = writeln!(t, "stiffness = {}", random.scaled(20.0, 50_000.0));
-    if random.percent(50) {
+    if random.first_or_percent(50) {
         _ = writeln!(t, "damping = {}", random.scaled(1.0, 300.0));
     }
-    if t.contains("range") && random.percent(30) {
+    if t.contains("range") && random.first_or_percent(30) {
         _ = writeln!(t, "reaction_ms = {}\ndeceleration = {}", random.whole(0, 200), random.scaled(0.5, 10.0));
     }
-    if law == "admittance" && random.percent(50) {
+    if law == "admittance" && random.first_or_percent(50) {
         _ = writeln!(t, "mass = {}", random.scaled(0.1, 20.0));
     }
     t

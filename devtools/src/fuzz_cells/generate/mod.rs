@@ -6,6 +6,7 @@ mod encounter;
 mod exchange;
 mod extras;
 mod faults;
+mod goals;
 mod grids;
 mod gripping;
 mod guided;
@@ -13,17 +14,22 @@ mod moving;
 mod moving_object;
 mod planned;
 mod rail;
+mod rare;
 mod recordings;
 mod region;
 mod robot;
 mod settings;
+mod shields;
 mod tools;
 
 use super::random::Random;
-use super::spec::{CellSpec, ObjectSpec, StepSpec};
+use super::spec::{CellSpec, Model, ObjectSpec, StepSpec};
 
 pub use settings::Places;
 use settings::settings;
+
+/// Tries to make a robot that can plan on a map.
+const TRIES: usize = 30;
 
 /// Kind of a random cell: what it tests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -85,13 +91,19 @@ impl Kind {
             Self::Stop => 80,
             Self::Faults | Self::Moving | Self::Recordings => 35,
             Self::Exchange | Self::Tools | Self::Gripping => 20,
-            Self::Planned => 8,
+            Self::Planned => 16,
             Self::Cooperating | Self::Guided => 6,
         }
     }
 
-    /// Returns the random numbers of one case.
+    /// Returns the random numbers of one case. The first cases, as many as the test suite has, have rare features in turn.
     pub fn random(self, seed: u64, case: u64) -> Random {
+        let is_first = case < self.suite_cells() as u64;
+        self.plain_random(seed, case).with_rare_features(is_first.then_some(case))
+    }
+
+    /// Returns the random numbers of one case without rare features.
+    pub fn plain_random(self, seed: u64, case: u64) -> Random {
         Random::of_case(seed, case + ((self as u64) << 32))
     }
 }
@@ -111,6 +123,10 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
     if spec.repeat == 0 && can_repeat(kind, &spec) && random.percent(10) {
         spec.repeat = 2;
     }
+    // A planned or guided robot has a scene beside it, or none.
+    let is_scene_free = !matches!(kind, Kind::Planned | Kind::Guided | Kind::Cooperating);
+    rare::rules(&mut spec, random);
+    rare::of_cell(&mut spec, is_scene_free, places, random);
     spec
 }
 
@@ -144,10 +160,22 @@ fn without_grids(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSp
         Kind::Gripping => gripping::cell(random, places),
         Kind::Planned => {
             let mut spec = stop(random, places);
+            // Each third of the first cells plans on a map, and another keeps an axis, with three joints or more.
+            let needs_joints = random.in_turn(3) != 1 && random.is_first();
+            for _ in 0..TRIES {
+                let robot = &spec.robots[0];
+                let has_few = matches!(robot.model, Model::Dh { .. }) && robot.start.len() < planned::MAPPED;
+                if !needs_joints || !has_few {
+                    break;
+                }
+                spec = stop(random, places);
+            }
             planned::plan(&mut spec, random);
             if let Ok(cell) = spec.parse(places.cells) {
                 planned::keep_axes(&mut spec, &cell, random);
             }
+            rare::map(&mut spec, random);
+            rare::near_scene(&mut spec, places, random);
             spec
         }
     }
@@ -169,5 +197,6 @@ fn stop(random: &mut Random, places: &Places<'_>) -> CellSpec {
         }
     }
     moving::some(&mut spec, random);
+    rare::goals(&mut spec, &cell, random);
     spec
 }

@@ -7,7 +7,7 @@ use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{CellSpec, KeepSpec, RobotSpec, StepSpec};
 
 /// Number of joints of a map.
-const MAPPED: usize = 3;
+pub const MAPPED: usize = 3;
 
 /// Turns most joint moves of a cell into planned moves.
 pub fn plan(spec: &mut CellSpec, random: &mut Random) {
@@ -17,7 +17,8 @@ pub fn plan(spec: &mut CellSpec, random: &mut Random) {
 }
 
 fn plan_moves(robot: &mut RobotSpec, random: &mut Random) {
-    let on_map = robot.start.len() >= MAPPED && random.percent(30);
+    let is_mapped = random.percent(30) || random.is_first() && random.in_turn(3) == 0;
+    let on_map = robot.start.len() >= MAPPED && is_mapped;
     // Joints outside the map keep their values.
     let rest = if on_map { robot.start[MAPPED..].to_vec() } else { Vec::new() };
     for step in &mut robot.program.steps {
@@ -39,7 +40,8 @@ fn plan_moves(robot: &mut RobotSpec, random: &mut Random) {
 /// freely, the others a little.
 pub fn keep_axes(spec: &mut CellSpec, cell: &Cell, random: &mut Random) {
     for (robot, r) in spec.robots.iter_mut().zip(&cell.robots) {
-        if robot.start.len() < MAPPED || !r.payload.tools.is_empty() || !random.percent(40) {
+        let keeps = random.percent(40) || random.is_first() && random.in_turn(3) == 2;
+        if robot.start.len() < MAPPED || !r.payload.tools.is_empty() || !keeps {
             continue;
         }
         let (start, within) = (robot.start.clone(), rounded(random.between(0.05, 0.6)));

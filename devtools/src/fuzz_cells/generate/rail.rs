@@ -32,7 +32,7 @@ pub fn turner(random: &mut Random) -> RobotSpec {
 /// turning.
 pub fn counter_turner(random: &mut Random) -> RobotSpec {
     let mut robot = turner(random);
-    let Model::Dh { rows, links } = &mut robot.model else { return robot };
+    let Model::Dh { rows, links, .. } = &mut robot.model else { return robot };
     rows.push(DhRow { a: 0.0, ..rows[0] });
     links.push(Vec::new());
     robot.start.push(-robot.start[0]);
@@ -53,7 +53,7 @@ fn row(slides: bool, a: f64, random: &mut Random) -> DhRow {
 fn one_joint(row: DhRow, start: f64, steps: Vec<StepSpec>, random: &mut Random) -> RobotSpec {
     let ball = SolidSpec::Sphere { at: [0.0; 3], radius: random.scaled(0.01, 0.1) };
     RobotSpec {
-        model: Model::Dh { rows: vec![row], links: vec![vec![ball]] },
+        model: Model::Dh { rows: vec![row], links: vec![vec![ball]], has_names: false },
         at: [0.0; 3],
         rpy: [0.0; 3],
         start: vec![start],
@@ -66,5 +66,7 @@ fn one_joint(row: DhRow, start: f64, steps: Vec<StepSpec>, random: &mut Random) 
         program: ProgramSpec::of_steps(100.0, steps),
         evades: Vec::new(),
         is_mechanism: false,
+        keys: Vec::new(),
+        starts_at_home: false,
     }
 }

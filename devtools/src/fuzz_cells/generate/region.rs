@@ -47,6 +47,7 @@ pub fn at(spec: &CellSpec, robot: usize, at: Vector, name: &str, random: &mut Ra
         temporary: false,
         is_fence: false,
         follow: None,
+        limits: None,
     }
 }
 
@@ -75,7 +76,11 @@ fn around(
         3 => (format!("shape = \"box\"\nfrom = [{x0}, {y0}, {z0}]\nto = [{x1}, {y1}, {z1}]\n"), false),
         _ => {
             let corners = format!("[[{x0}, {y0}], [{x1}, {y0}], [{x1}, {y1}], [{x0}, {y1}]]");
-            let gates = if random.percent(40) { gate([x0, x1], y1, [z0, z1], random) } else { String::new() };
+            let gates = if random.percent(40) || random.is_first() {
+                gate([x0, x1], y1, [z0, z1], random)
+            } else {
+                String::new()
+            };
             (format!("corners = {corners}\nfloor = {z0}\nheight = {}\n{gates}", rounded(z1 - z0)), true)
         }
     };
@@ -91,7 +96,7 @@ fn gate([x0, x1]: [f64; 2], y: f64, [z0, z1]: [f64; 2], random: &mut Random) -> 
         [rounded(low + (high - low) * a), rounded(low + (high - low) * b)]
     };
     let ([from, to], [bottom, top]) = (between(x0, x1), between(z0, z1));
-    let low = if random.percent(50) { format!(", bottom = {bottom}") } else { String::new() };
+    let low = if random.first_or_percent(50) { format!(", bottom = {bottom}") } else { String::new() };
     let high = if random.percent(50) { format!(", top = {top}") } else { String::new() };
     format!("gates = [{{ from = [{from}, {y}], to = [{to}, {y}]{low}{high} }}]\n")
 }

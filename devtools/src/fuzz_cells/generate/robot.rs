@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::rare;
 use super::settings::{Places, program, stop_time};
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{DhRow, HandSpec, Model, ProgramSpec, RobotSpec, SolidSpec};
@@ -23,15 +24,16 @@ const REAL: [&str; 4] = [
 
 /// Makes any robot, with a program, at the origin.
 pub fn any(random: &mut Random, places: &Places<'_>) -> RobotSpec {
-    let mut robot = match random.whole(0, 99) {
+    let mut robot = rare::robot(random, places).unwrap_or_else(|| match random.whole(0, 99) {
         0..=5 => from_file(random, places),
         6..=25 => gantry(random),
         _ => arm(random),
-    };
+    });
     if random.percent(50) {
         robot.rpy = [random.between(-PI, PI), random.between(-FRAC_PI_2, FRAC_PI_2), random.between(-PI, PI)];
     }
     equip(&mut robot, random);
+    rare::keys(&mut robot, random);
     robot
 }
 
@@ -52,7 +54,8 @@ pub fn jointed(random: &mut Random) -> RobotSpec {
     robot
 }
 
-fn bare(model: Model, start: Vec<f64>, random: &mut Random) -> RobotSpec {
+/// Makes a robot without hand and program.
+pub fn bare(model: Model, start: Vec<f64>, random: &mut Random) -> RobotSpec {
     RobotSpec {
         model,
         at: [0.0; 3],
@@ -69,6 +72,8 @@ fn bare(model: Model, start: Vec<f64>, random: &mut Random) -> RobotSpec {
         ),
         evades: Vec::new(),
         is_mechanism: false,
+        keys: Vec::new(),
+        starts_at_home: false,
     }
 }
 
@@ -141,14 +146,14 @@ fn finish(rows: Vec<DhRow>, linear: Option<(f64, f64)>, random: &mut Random) -> 
         .collect();
     let mut place = || rows.iter().map(|r| random.between(r.min, r.max)).collect::<Vec<f64>>();
     let (start, targets) = (place(), [place(), place(), place()]);
-    let mut robot = bare(Model::Dh { rows, links }, start, random);
+    let mut robot = bare(Model::Dh { rows, links, has_names: false }, start, random);
     let count = random.whole(1, 3);
     robot.program.steps = program(targets[..count].to_vec(), linear, random);
     robot
 }
 
 /// Makes a random solid about the origin; long ones may reach back along the link.
-fn solid(random: &mut Random, back: [f64; 3], most: f64) -> SolidSpec {
+pub fn solid(random: &mut Random, back: [f64; 3], most: f64) -> SolidSpec {
     let at = random.vector(most * 0.5);
     let radius = random.between(0.01, most * 0.5);
     let to = if random.percent(50) { back } else { random.vector(most) };

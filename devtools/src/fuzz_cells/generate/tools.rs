@@ -3,7 +3,7 @@
 use super::settings::{Places, laws, settings};
 use super::{exchange, region, robot};
 use crate::fuzz_cells::random::Random;
-use crate::fuzz_cells::spec::{CellSpec, HandSpec, RobotSpec, StepSpec, ToolSpec};
+use crate::fuzz_cells::spec::{CellSpec, HandSpec, Model, RobotSpec, StepSpec, ToolSpec};
 
 /// Makes a cell with forbidden regions, or with exchange regions of several robots.
 pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
@@ -39,9 +39,16 @@ fn equip(robot: &mut RobotSpec, random: &mut Random, reach: f64) {
         let length = if i == 1 { random.between(0.2, reach) } else { random.between(0.02, 0.3) };
         let size = [random.between(0.02, 0.1), random.between(0.02, 0.1), length];
         let solid = random.percent(85).then_some(([0.0, 0.0, length / 2.0], size));
-        ToolSpec { name: (*name).to_owned(), tcp: [0.0, 0.0, length], solid, mounted: i == 0 }
+        ToolSpec { name: (*name).to_owned(), tcp: [0.0, 0.0, length], solid, mounted: i == 0, flange: None }
     };
-    let tools: Vec<ToolSpec> = names.iter().take(2).enumerate().map(tool).collect();
+    let mut tools: Vec<ToolSpec> = names.iter().take(2).enumerate().map(tool).collect();
+    if let Some(mut r) = random.rare(0, 4, 10)
+        && let Model::Dh { rows, .. } = &robot.model
+        && rows.len() > 1
+    {
+        // Its own flange has it from the start on, or gets it later.
+        (tools[1].flange, tools[1].mounted) = (Some("link_1".into()), r.percent(50));
+    }
     let count = random.whole(1, 3);
     for i in 0..count {
         let name = if i == 0 { "torch".to_owned() } else { tools[random.whole(0, 1)].name.clone() };

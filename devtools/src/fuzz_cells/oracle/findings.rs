@@ -26,7 +26,7 @@ pub enum Finding {
     OffPath { t_s: f64, off_m: f64 },
     /// The recorded share of a work-piece that is hidden from a camera, or the time for which it is hidden, is wrong.
     WrongView { t_s: f64, share: f64, recorded: Option<f64> },
-    /// A robot of a virtual robot touched something.
+    /// A robot of a virtual robot touched something, or one on planned paths an object.
     Touched { robot: usize, t_s: f64 },
     /// An axis of a tool that keeps its direction on a planned move left it.
     Tilted { robot: usize, t_s: f64, off_rad: f64, within_rad: f64 },
@@ -44,6 +44,10 @@ pub enum Finding {
     Slowed { robot: usize, t_s: f64 },
     /// A joint was faster than it can, by this share of its speed.
     TooFast { robot: usize, t_s: f64, share: f64 },
+    /// Something in the cell is not as its file states.
+    Misread { table: String, off: f64 },
+    /// A move to a pose ended elsewhere, or led elsewhere, by this much (m, rad).
+    OffGoal { robot: usize, t_s: f64, off: f64 },
     /// A joint decelerated harder than it can.
     TooHard { robot: usize, joint: usize, t_s: f64, deceleration: f64, limit: f64 },
 }

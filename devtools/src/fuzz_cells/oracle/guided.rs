@@ -1,25 +1,20 @@
 //! Check of guided robots: the tool keeps its least gap from objects and stays out of shields, the arm touches nothing,
 //! and forces make no energy.
 
-use elbowroom_cell::shared_control::{ShieldSettings, ShieldTarget};
 use elbowroom_cell::{Cell, CellFixture, CellOperator, ForceResponse, ShieldSource};
 use elbowroom_proximity::Shape;
 use elbowroom_robot::{ObjectId, RobotId};
 use elbowroom_sim::{EventRow, Recording, RunEvent};
-use elbowroom_spatial::Vec3;
 
 use super::arm::Arm;
 use super::findings::{Finding, Findings, TOLERANCE_M};
 use super::frame::Frame;
 use super::guarded::Guarded;
+use super::shield::inside_shield;
 use super::solid::OracleSolid;
 
 /// Distances beyond this are not computed, m.
 const FAR_M: f64 = 0.5;
-/// Points along an edge of a tool's box that are tried against a shield.
-const POINTS: i32 = 8;
-/// Tank of `impedance` by default, J.
-const TANK_J: f64 = 0.01;
 /// Rounding of an energy, J.
 const ROUNDING_J: f64 = 1e-6;
 
@@ -61,8 +56,14 @@ fn distances(
     let fixtures = &cell.guidance.fixtures;
     let shield_of = |object: usize, t_s: f64| {
         let is_of = |f: &&CellFixture| f.tool == Some(operator.tool) && f.protects == ObjectId(object);
-        fixtures.iter().find(|f| is_of(f) && is_on(f, recording, t_s))
+        fixtures.iter().enumerate().find(|(_, f)| is_of(f) && is_on(f, recording, t_s))
     };
+    // The shields that files have, in the frames of their objects.
+    let read = |f: &CellFixture| match &f.shield {
+        ShieldSource::Mesh(mesh) => Some(OracleSolid::eroded(&Shape::Mesh(mesh.clone()), 0.0)),
+        ShieldSource::Generated { .. } => None,
+    };
+    let read_shields: Vec<Option<OracleSolid>> = fixtures.iter().map(read).collect();
     let tool_link = cell.robots[robot].flange.0;
     let pairs: Vec<(&Guarded, usize, f64)> = parts
         .iter()
@@ -78,9 +79,16 @@ fn distances(
         let before = &samples[k.saturating_sub(1)].q;
         let t_s = sample.t_s;
         for (i, &(part, object, least_m)) in pairs.iter().enumerate() {
-            if part.link == tool_link && shield_of(object, t_s).is_some() {
+            let shield = shield_of(object, t_s).filter(|_| part.link == tool_link);
+            if let Some(shield) = shield {
                 // Nothing is known of what happens meanwhile.
                 slack_m[i] = 0.0;
+                let Some(solid) = &read_shields[shield.0] else { continue };
+                let distance_m = part.distance(&frames, solid, &objects[object].1, FAR_M).upper;
+                if distance_m < least_m - TOLERANCE_M {
+                    findings.list.push(Finding::TooNear { robot, object, t_s, distance_m, least_m });
+                    return;
+                }
                 continue;
             }
             let motion = sample.q.iter().zip(before).zip(&lever_arms[i]);
@@ -98,7 +106,7 @@ fn distances(
             slack_m[i] = distance.lower - least_m;
         }
         for (object, (_, at)) in objects.iter().enumerate() {
-            if let Some(inside_m) = shield_of(object, t_s).and_then(|f| inside_shield(cell, f, &frames, at)) {
+            if let Some(inside_m) = shield_of(object, t_s).and_then(|(_, f)| inside_shield(cell, f, &frames, at)) {
                 let (distance_m, least_m) = (-inside_m, 0.0);
                 findings.list.push(Finding::TooNear { robot, object, t_s, distance_m, least_m });
                 return;
@@ -118,62 +126,19 @@ fn is_on(fixture: &CellFixture, recording: &Recording, t_s: f64) -> bool {
     switched.find_map(state).unwrap_or(fixture.active)
 }
 
-/// How far a point of the tool's box is inside the shield of a drill in a box, beyond its tolerance; `None` if none is.
-fn inside_shield(cell: &Cell, fixture: &CellFixture, frames: &[Frame], object_at: &Frame) -> Option<f64> {
-    let robot = &cell.robots[fixture.tool.map_or(RobotId(0), |t| t.robot).0];
-    let ShieldSource::Generated { target: ShieldTarget::Drill { at, axis }, settings } = &fixture.shield else {
-        return None;
-    };
-    let (Shape::Cuboid(object), tool) = (&cell.objects[fixture.protects.0].shape, robot.payload.tool.as_ref()?) else {
-        return None;
-    };
-    let Shape::Cuboid(tool_box) = &tool.shape else { return None };
-    let tool_in_world = frames[robot.flange.0].then(&Frame::of(&tool.in_link));
-    let depth_m = |p: Vec3| {
-        let p = object_at.vector_back(tool_in_world.point(p) - object_at.at);
-        let outside = p.abs() - object.half_extents;
-        let distance_m =
-            if outside.max_element() <= 0.0 { outside.max_element() } else { outside.max(Vec3::ZERO).length() };
-        let below_offset = settings.offset_m - distance_m;
-        below_offset.min(outside_opening(p, *at, *axis, settings)) - settings.tolerance_m
-    };
-    let deepest = surface_points(tool_box.half_extents).map(depth_m).fold(f64::NEG_INFINITY, f64::max);
-    (deepest > TOLERANCE_M).then_some(deepest)
-}
-
-/// Distance of a point of the object's frame from the opening, or less, m; negative inside.
-fn outside_opening(p: Vec3, at: Vec3, axis: Vec3, s: &ShieldSettings) -> f64 {
-    let out = axis.try_normalize().map_or(Vec3::Z, |a| -a);
-    let height = out.dot(p - at);
-    let aside = (p - at - out * height).length();
-    let wall = (aside - 0.5 * s.width_m) * s.flare_rad.cos() - (height + s.depth_m) * s.flare_rad.sin();
-    wall.max(-(height + s.depth_m))
-}
-
-/// Points all over the surface of a box.
-fn surface_points(half: Vec3) -> impl Iterator<Item = Vec3> {
-    let share = |i: i32| 2.0 * f64::from(i) / f64::from(POINTS) - 1.0;
-    let side = move |(axis, sign): (usize, f64)| {
-        (0..=POINTS).flat_map(move |i| {
-            (0..=POINTS).map(move |j| {
-                let mut p = [sign, share(i), share(j)];
-                p.rotate_right(axis);
-                Vec3::new(p[0] * half.x, p[1] * half.y, p[2] * half.z)
-            })
-        })
-    };
-    (0..3).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]).flat_map(side)
-}
-
 /// The hand gets no more energy than it put in, and a tank. A virtual mass gives nothing back at all.
 fn energy(cell: &Cell, robot: usize, recording: &Recording, findings: &mut Findings) {
     let Some(track) = &recording.robots[robot].guidance else { return };
-    let forces = || cell.guidance.forces.iter().filter(|f| f.tool.robot == RobotId(robot));
-    let has_port = forces().any(|f| matches!(f.response, ForceResponse::Impedance(_)));
+    let forces = cell.guidance.forces.iter().filter(|f| f.tool.robot == RobotId(robot));
+    let tank = |response: &ForceResponse| match response {
+        ForceResponse::Impedance(port) => Some(port.tank_j),
+        _ => None,
+    };
+    let tank_j = forces.filter_map(|f| tank(&f.response)).reduce(f64::max);
     let mut before_j = 0.0;
     for sample in &track.samples {
         let Some(force) = sample.force else { continue };
-        let least_j = if has_port { -TANK_J } else { before_j };
+        let least_j = tank_j.map_or(before_j, |tank_j| -tank_j);
         if !(force.energy_j >= least_j - ROUNDING_J) || !force.on_hand_n.is_finite() {
             findings.list.push(Finding::EnergyMade { robot, t_s: sample.t_s, energy_j: force.energy_j - least_j });
             return;

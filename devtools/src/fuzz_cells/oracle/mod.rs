@@ -6,6 +6,7 @@
 //! linearly.
 
 mod arm;
+pub mod as_written;
 mod carrier;
 mod cooperating;
 mod entry;
@@ -23,12 +24,14 @@ mod motion;
 mod mounted;
 mod physics;
 mod place;
+mod planned_paths;
 #[cfg(test)]
 mod planted_tests;
 mod presence;
 mod promises;
 pub mod readings;
 pub mod recorded;
+mod shield;
 mod simplex;
 mod solid;
 mod sweep;
@@ -60,6 +63,7 @@ pub fn check(cell: &Cell, recording: &Recording, promises: &Promises<'_>, has_vi
     guided::check(cell, recording, &arms, &mut findings);
     entry::check(cell, recording, &arms, &mut findings);
     cooperating::check(cell, recording, &arms, &mut findings);
+    planned_paths::check(cell, recording, &arms, &mut findings);
     kept_axes::check(cell, recording, &arms, &mut findings);
     grids::check(cell, recording, &arms, &mut findings);
     mechanisms::check(cell, recording, &mut findings);

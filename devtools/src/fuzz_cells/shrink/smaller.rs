@@ -3,7 +3,8 @@
 use elbowroom_robot::RobotId;
 
 use crate::fuzz_cells::spec::{
-    CellSpec, FollowSpec, GuidanceSpec, Model, MotionSpec, ObjectSpec, ProgramSpec, RecordingSpec, RobotSpec, StepSpec,
+    CellSpec, Extras, FollowSpec, GuidanceSpec, Model, MotionSpec, ObjectSpec, ProgramSpec, RecordingSpec, RobotSpec,
+    StepSpec, Turns,
 };
 
 /// Least number of rows of a recording.
@@ -26,6 +27,7 @@ impl Candidates<'_> {
 /// Returns every cell that has one thing less, the largest things first.
 pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     let mut list = Candidates { spec, list: Vec::new() };
+    fewer_extras(&mut list, &spec.extras);
     // The first robot is the one that is guided; all of them carry a bar.
     let least = spec.guidance.as_ref().map_or(0, |g| if g.virtual_robot.is_empty() { 1 } else { spec.robots.len() });
     for i in (least..spec.robots.len()).rev().filter(|_| spec.robots.len() > 1) {
@@ -33,9 +35,6 @@ pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     }
     for i in 0..spec.regions.len() {
         list.push(|c| remove_region(c, i));
-    }
-    for i in 0..spec.extras.len() {
-        list.push(|c| drop(c.extras.remove(i)));
     }
     for i in 0..spec.grids.len() {
         list.push(|c| drop(c.grids.remove(i)));
@@ -63,6 +62,25 @@ pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
         list.push(|c| c.reaction_ms = 0.0);
     }
     list.list
+}
+
+/// Adds the cell without each of its extras. The head comes first: it may have the checksum of the larger cell.
+fn fewer_extras(list: &mut Candidates<'_>, extras: &Extras) {
+    for i in 0..extras.head.len() {
+        list.push(|c| drop(c.extras.head.remove(i)));
+    }
+    for i in 0..extras.scenes.len() {
+        list.push(|c| drop(c.extras.scenes.remove(i)));
+    }
+    for i in 0..extras.tables.len() {
+        list.push(|c| drop(c.extras.tables.remove(i)));
+    }
+    for i in 0..extras.keys.len() {
+        list.push(|c| drop(c.extras.keys.remove(i)));
+    }
+    if extras.turns != Turns::Rpy {
+        list.push(|c| c.extras.turns = Turns::Rpy);
+    }
 }
 
 /// Adds the cell without an object that nothing follows or evades, or with a simpler motion of it.
@@ -153,12 +171,21 @@ fn emptier_robot(list: &mut Candidates<'_>, r: usize, robot: &RobotSpec) {
             }
         }
     }
+    for i in 0..robot.keys.len() {
+        list.push(|c| drop(c.robots[r].keys.remove(i)));
+    }
+    if robot.starts_at_home {
+        list.push(|c| c.robots[r].starts_at_home = false);
+    }
     let hand = &robot.hand;
     if hand.load.is_some() {
         list.push(|c| c.robots[r].hand.load = None);
     }
     if hand.tool_box.is_some() {
         list.push(|c| c.robots[r].hand.tool_box = None);
+    }
+    if hand.tool_mesh.is_some() {
+        list.push(|c| c.robots[r].hand.tool_mesh = None);
     }
     if hand.tcp.is_some() {
         list.push(|c| c.robots[r].hand.tcp = None);

@@ -2,7 +2,7 @@
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// A table of numbers in a file.
+/// A file, mostly a table of numbers.
 #[derive(Debug, Clone)]
 pub struct CellFile {
     /// Made from the contents, so that cells do not share it.
@@ -11,6 +11,13 @@ pub struct CellFile {
 }
 
 impl CellFile {
+    /// Creates a file whose name has the kind, a number made from the text, and the extension.
+    pub fn new(kind: &str, extension: &str, text: String) -> Self {
+        let mut hasher = DefaultHasher::new();
+        text.hash(&mut hasher);
+        Self { name: format!("{kind}-{:016x}.{extension}", hasher.finish()), text }
+    }
+
     /// Creates a table whose cells are separated by commas.
     pub fn csv(kind: &str, head: &str, rows: impl IntoIterator<Item = Vec<f64>>) -> Self {
         Self::separated(kind, ',', head, rows)
@@ -27,8 +34,6 @@ impl CellFile {
         for row in rows {
             text += &(row.iter().map(number).collect::<Vec<String>>().join(&between) + "\n");
         }
-        let mut hasher = DefaultHasher::new();
-        text.hash(&mut hasher);
-        Self { name: format!("{kind}-{:016x}.csv", hasher.finish()), text }
+        Self::new(kind, "csv", text)
     }
 }

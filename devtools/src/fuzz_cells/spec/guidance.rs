@@ -16,6 +16,8 @@ pub struct GuidanceSpec {
     pub switches: bool,
     /// Tables `[fixture.NAME]` and `[force.NAME]`.
     pub tables: Vec<String>,
+    /// Files of shields.
+    pub shields: Vec<CellFile>,
 }
 
 /// A row of the stream: pose of the hand in the world, metres.

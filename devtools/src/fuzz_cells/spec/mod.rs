@@ -1,6 +1,7 @@
 //! Cell in the form of the fuzzer: simple enough to be shrunk, and written as a cell file.
 
 mod comments;
+mod extras;
 mod files;
 mod grid;
 mod guidance;
@@ -8,6 +9,7 @@ mod object;
 mod recording;
 mod region;
 mod robot;
+mod scene;
 mod text;
 
 use std::fmt::Write as _;
@@ -17,13 +19,15 @@ use elbowroom_cell::Cell;
 use elbowroom_sim::InputFault;
 
 pub use comments::{read_faults, read_repeat};
-use files::CellFile;
+pub use extras::{ExtraKey, Extras, Turns};
+pub use files::CellFile;
 pub use grid::GridSpec;
 pub use guidance::{GuidanceSpec, HandRow};
 pub use object::{MotionSpec, ObjectSpec};
 pub use recording::{RecordingLayout, RecordingSpec};
 pub use region::{BeltSpec, BeltTravel, FollowSpec, PoseRow, RegionSpec};
-pub use robot::{DhRow, HandSpec, KeepSpec, Model, ProgramSpec, RobotSpec, SolidSpec, StepSpec, ToolSpec};
+pub use robot::{DhRow, GoalSpec, HandSpec, KeepSpec, Model, ProgramSpec, RobotSpec, SolidSpec, StepSpec, ToolSpec};
+pub use scene::{SceneBox, SceneSpec};
 pub use text::{Vector, list};
 
 /// A whole cell; metres, radians, seconds.
@@ -45,25 +49,18 @@ pub struct CellSpec {
     pub repeat: u32,
     /// Guidance of the first robot.
     pub guidance: Option<GuidanceSpec>,
-    /// Further keys of tables.
-    pub extras: Vec<ExtraKey>,
-}
-
-/// A line of a table, such as `hysteresis = 0.01` of `region.g0`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExtraKey {
-    pub table: String,
-    pub line: String,
+    pub extras: Extras,
 }
 
 impl CellSpec {
     /// Writes the cell file. Settings that no cell file has are in comments.
     pub fn to_toml(&self) -> String {
         let mut t = String::from("version = 1\nunits = { length = \"m\", angle = \"rad\" }\n");
-        let _ = writeln!(t, "tick_ms = {}\nmax_s = {}\n", self.tick_ms, self.max_s);
+        let _ = writeln!(t, "tick_ms = {}\nmax_s = {}", self.tick_ms, self.max_s);
+        self.extras.head.iter().for_each(|line| t.extend([line, "\n"]));
         let _ = writeln!(
             t,
-            "[monitor]\nstopping_distance = {}\nreaction_ms = {}\ndirection_aware = {}\nrecovery = {}\n",
+            "\n[monitor]\nstopping_distance = {}\nreaction_ms = {}\ndirection_aware = {}\nrecovery = {}\n",
             self.stopping_distance, self.reaction_ms, self.direction_aware, self.recovery_percent
         );
         self.robots.iter().enumerate().for_each(|(i, robot)| robot.write(&mut t, i));
@@ -81,12 +78,10 @@ impl CellSpec {
         self.guidance.iter().for_each(|guidance| guidance.write(&mut t));
         comments::write_repeat(&mut t, self.repeat);
         self.faults.iter().for_each(|f| comments::write_fault(&mut t, f));
-        for ExtraKey { table, line } in &self.extras {
-            // A table that is not there any more has no keys.
-            let head = format!("[{table}]\n");
-            t = t.replacen(&head, &format!("{head}{line}\n"), 1);
-        }
-        t
+        self.extras.tables.iter().for_each(|table| t.extend([table, "\n"]));
+        self.extras.scenes.iter().for_each(|scene| scene.write(&mut t));
+        self.extras.write_keys(&mut t);
+        self.extras.turns.write(&t)
     }
 
     /// Parses the cell as if read from its file in this folder.
@@ -108,8 +103,10 @@ impl CellSpec {
 
     fn files(&self) -> impl Iterator<Item = CellFile> {
         let recordings = self.robots.iter().filter_map(|r| r.program.recording.as_ref()).map(RecordingSpec::file);
-        let streams = self.guidance.iter().map(GuidanceSpec::file);
+        let streams = self.guidance.iter().flat_map(|g| g.shields.iter().cloned().chain([g.file()]));
         let belts = self.belts.iter().filter_map(BeltSpec::file);
-        recordings.chain(streams).chain(belts).chain(self.regions.iter().filter_map(RegionSpec::file))
+        let poses = self.regions.iter().filter_map(RegionSpec::file);
+        let extras = self.extras.files.iter().cloned().chain(self.extras.scenes.iter().map(SceneSpec::file));
+        recordings.chain(streams).chain(belts).chain(poses).chain(extras)
     }
 }

@@ -40,6 +40,8 @@ pub struct RegionSpec {
     /// Whether its table is one of a fence.
     pub is_fence: bool,
     pub follow: Option<FollowSpec>,
+    /// Largest plausible speed and turn of what it follows.
+    pub limits: Option<(f64, f64)>,
 }
 
 #[derive(Debug, Clone)]
@@ -120,16 +122,16 @@ impl RegionSpec {
             let _ = writeln!(t, "robots = [{}]", names.join(", "));
         }
         if let Some(follow) = &self.follow {
-            let _ = match follow {
-                FollowSpec::Belt(name) => writeln!(t, "follow = {{ encoder = \"{name}\" }}"),
-                FollowSpec::Object(name) => writeln!(t, "follow = {{ object = \"{name}\" }}"),
-                FollowSpec::Robot { robot, frame } => {
-                    writeln!(t, "follow = {{ robot = \"r{robot}\", frame = \"{frame}\" }}")
-                }
+            let source = match follow {
+                FollowSpec::Belt(name) => format!("encoder = \"{name}\""),
+                FollowSpec::Object(name) => format!("object = \"{name}\""),
+                FollowSpec::Robot { robot, frame } => format!("robot = \"r{robot}\", frame = \"{frame}\""),
                 FollowSpec::Poses { rows, in_quaternions } => {
-                    writeln!(t, "follow = {{ poses = \"{}\" }}", poses_file(rows, *in_quaternions).name)
+                    format!("poses = \"{}\"", poses_file(rows, *in_quaternions).name)
                 }
             };
+            let limits = self.limits.map(|(speed, turn)| format!(", max_speed = {speed}, max_turn = {turn}"));
+            let _ = writeln!(t, "follow = {{ {source}{} }}", limits.unwrap_or_default());
         }
         t.push('\n');
     }

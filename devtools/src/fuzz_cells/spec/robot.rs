@@ -22,6 +22,10 @@ pub struct RobotSpec {
     /// Names of the objects that it evades; empty for a robot without avoidance.
     pub evades: Vec<String>,
     pub is_mechanism: bool,
+    /// Further lines of its table.
+    pub keys: Vec<String>,
+    /// Whether it starts in a state that has a name.
+    pub starts_at_home: bool,
 }
 
 /// Parts at the flange: one tool and a load, or several tools.
@@ -30,6 +34,8 @@ pub struct HandSpec {
     pub tcp: Option<Vector>,
     /// Centre and size.
     pub tool_box: Option<(Vector, Vector)>,
+    /// Place and turn of the mesh of a corner, in place of the box.
+    pub tool_mesh: Option<(Vector, Vector)>,
     pub load: Option<SolidSpec>,
     pub tools: Vec<ToolSpec>,
 }
@@ -42,6 +48,8 @@ pub struct ToolSpec {
     /// Centre and size.
     pub solid: Option<(Vector, Vector)>,
     pub mounted: bool,
+    /// The link that carries it, if it is not the robot's flange.
+    pub flange: Option<String>,
 }
 
 /// Steps, or a recording.
@@ -59,6 +67,8 @@ pub enum Model {
     Dh {
         rows: Vec<DhRow>,
         links: Vec<Vec<SolidSpec>>,
+        /// Whether its joints have names of their own.
+        has_names: bool,
     },
     /// Lines of the robot's table that name the model.
     File(String),
@@ -79,10 +89,31 @@ pub struct DhRow {
 
 #[derive(Debug, Clone, Copy)]
 pub enum SolidSpec {
-    Sphere { at: Vector, radius: f64 },
-    Box { at: Vector, rpy: Vector, size: Vector },
-    Capsule { from: Vector, to: Vector, radius: f64 },
-    Cylinder { from: Vector, to: Vector, radius: f64 },
+    Sphere {
+        at: Vector,
+        radius: f64,
+    },
+    Box {
+        at: Vector,
+        rpy: Vector,
+        size: Vector,
+    },
+    Capsule {
+        from: Vector,
+        to: Vector,
+        radius: f64,
+    },
+    Cylinder {
+        from: Vector,
+        to: Vector,
+        radius: f64,
+    },
+    /// The mesh of a corner, whose numbers are in this unit.
+    Mesh {
+        at: Vector,
+        rpy: Vector,
+        unit: &'static str,
+    },
 }
 
 /// An axis of the tool that keeps its direction.
@@ -92,14 +123,42 @@ pub struct KeepSpec {
     pub within: f64,
 }
 
+/// A pose of the tool centre point in the world.
+#[derive(Debug, Clone)]
+pub struct GoalSpec {
+    pub at: Vector,
+    pub rpy: Vector,
+    /// Further keys, such as `near = […]`.
+    pub choice: String,
+}
+
 #[derive(Debug, Clone)]
 pub enum StepSpec {
-    Joint { to: Vec<f64>, percent: f64 },
-    Linear { to: Vec<f64>, speed: f64 },
-    Planned { to: Vec<f64>, percent: f64, on_map: bool, keep: Option<KeepSpec> },
+    Joint {
+        to: Vec<f64>,
+        percent: f64,
+    },
+    Linear {
+        to: Vec<f64>,
+        speed: f64,
+    },
+    /// A move to a pose of the tool centre point, which it has at these joint values.
+    Pose {
+        to: Vec<f64>,
+        goal: GoalSpec,
+    },
+    Planned {
+        to: Vec<f64>,
+        percent: f64,
+        on_map: bool,
+        keep: Option<KeepSpec>,
+    },
     Wait(f64),
     Override(f64),
-    Switch { region: String, active: bool },
+    Switch {
+        region: String,
+        active: bool,
+    },
     Tool(String),
     Grip(String),
     Release(String),
@@ -110,10 +169,11 @@ impl RobotSpec {
         let _ = writeln!(t, "[robot.r{index}]\nbase = {{ at = {}, rpy = {} }}", list(&self.at), list(&self.rpy));
         match &self.model {
             Model::File(lines) => t.push_str(lines),
-            Model::Dh { rows, links } => {
+            Model::Dh { rows, links, has_names } => {
                 t.push_str("dh = [\n");
-                for r in rows {
-                    r.write(t);
+                for (i, r) in rows.iter().enumerate() {
+                    let name = if *has_names { format!("name = \"axis {i}\", ") } else { String::new() };
+                    r.write(t, &name);
                 }
                 t.push_str("]\nlinks = [\n");
                 for solids in links {
@@ -125,8 +185,14 @@ impl RobotSpec {
         }
         // A recording begins at its first row.
         if self.program.recording.is_none() {
-            let _ = writeln!(t, "start = {}", list(&self.start));
+            let start = list(&self.start);
+            let _ = if self.starts_at_home {
+                writeln!(t, "states = {{ home = {start} }}\nstart = \"home\"")
+            } else {
+                writeln!(t, "start = {start}")
+            };
         }
+        self.keys.iter().for_each(|key| t.extend([key, "\n"]));
         if self.is_mechanism {
             t.push_str("kind = \"mechanism\"\n\n");
             return;
@@ -148,7 +214,7 @@ impl HandSpec {
         if let Some(load) = &self.load {
             let _ = writeln!(t, "load = {}", load.text());
         }
-        if self.tcp.is_some() || self.tool_box.is_some() {
+        if self.tcp.is_some() || self.tool_box.is_some() || self.tool_mesh.is_some() {
             let _ = writeln!(t, "[robot.r{index}.tool]");
         }
         if let Some(tcp) = &self.tcp {
@@ -156,6 +222,9 @@ impl HandSpec {
         }
         if let Some((at, size)) = &self.tool_box {
             let _ = writeln!(t, "box = {{ at = {}, size = {} }}", list(at), list(size));
+        } else if let Some((at, rpy)) = &self.tool_mesh {
+            let place = format!("at = {}\nrpy = {}", list(at), list(rpy));
+            let _ = writeln!(t, "mesh = \"corner.obj\"\nmesh_unit = \"m\"\n{place}");
         }
         for tool in &self.tools {
             let _ = writeln!(t, "[robot.r{index}.tools.{}]\ntcp = {{ at = {} }}", tool.name, list(&tool.tcp));
@@ -164,6 +233,9 @@ impl HandSpec {
             }
             if !tool.mounted {
                 t.push_str("mounted = false\n");
+            }
+            if let Some(flange) = &tool.flange {
+                let _ = writeln!(t, "flange = \"{flange}\"");
             }
         }
     }
@@ -194,18 +266,19 @@ impl ProgramSpec {
 }
 
 impl DhRow {
-    fn write(&self, t: &mut String) {
+    fn write(&self, t: &mut String, name: &str) {
         let kind = if self.slides { "prismatic" } else { "revolute" };
         let _ = writeln!(
             t,
-            "  {{ kind = \"{kind}\", a = {}, alpha = {}, d = {}, theta = {}, min = {}, max = {}, speed = {}, acceleration = {} }},",
+            "  {{ {name}kind = \"{kind}\", a = {}, alpha = {}, d = {}, theta = {}, min = {}, max = {}, speed = {}, acceleration = {} }},",
             self.a, self.alpha, self.d, self.theta, self.min, self.max, self.speed, self.acceleration
         );
     }
 }
 
 impl SolidSpec {
-    fn text(&self) -> String {
+    /// The solid as a table in one line.
+    pub fn text(&self) -> String {
         match self {
             Self::Sphere { at, radius } => format!("{{ sphere = {{ at = {}, radius = {radius} }} }}", list(at)),
             Self::Box { at, rpy, size } => {
@@ -217,6 +290,10 @@ impl SolidSpec {
             Self::Cylinder { from, to, radius } => {
                 format!("{{ cylinder = {{ from = {}, to = {}, radius = {radius} }} }}", list(from), list(to))
             }
+            Self::Mesh { at, rpy, unit } => {
+                let place = format!("at = {}, rpy = {}", list(at), list(rpy));
+                format!("{{ mesh = {{ file = \"corner.obj\", {place}, mesh_unit = \"{unit}\" }} }}")
+            }
         }
     }
 }
@@ -225,7 +302,9 @@ impl StepSpec {
     /// The joint values at the end of a move.
     pub fn target(&self) -> Option<&Vec<f64>> {
         match self {
-            Self::Joint { to, .. } | Self::Linear { to, .. } | Self::Planned { to, .. } => Some(to),
+            Self::Joint { to, .. } | Self::Linear { to, .. } | Self::Planned { to, .. } | Self::Pose { to, .. } => {
+                Some(to)
+            }
             _ => None,
         }
     }
@@ -236,6 +315,10 @@ impl StepSpec {
                 writeln!(t, "  {{ move = \"joint\", to = {}, speed = {percent} }},", list(to))
             }
             Self::Linear { to, speed } => writeln!(t, "  {{ move = \"linear\", to = {}, speed = {speed} }},", list(to)),
+            Self::Pose { goal: GoalSpec { at, rpy, choice }, .. } => {
+                let place = format!("at = {}, rpy = {}", list(at), list(rpy));
+                writeln!(t, "  {{ move = \"joint\", to = {{ {place}{choice} }} }},")
+            }
             Self::Planned { to, percent, on_map, keep } => {
                 let planner = if *on_map { "grid" } else { "rrt-connect" };
                 let to = list(to);
