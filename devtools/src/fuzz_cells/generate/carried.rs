@@ -9,7 +9,7 @@ use elbowroom_spatial::Vec3;
 use super::encounter::Encounter;
 use super::moving_object::{local, moving_object, object_frame, text, vector};
 use super::settings::{Places, settings};
-use super::{rail, region, robot};
+use super::{any_robot, rail, region, robot};
 use crate::fuzz_cells::oracle::Arm;
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{CellSpec, FollowSpec, MotionSpec, ObjectSpec, RegionSpec, RobotSpec, StepSpec};
@@ -20,7 +20,7 @@ const TRIES: usize = 4;
 /// Makes a cell with a robot whose path regions cross.
 pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     let mut spec = CellSpec { max_s: 5.0, ..settings(random) };
-    spec.robots.push(if random.percent(75) { rail::slide(random) } else { robot::any(random, places) });
+    spec.robots.push(if random.percent(75) { rail::slide(random) } else { any_robot::any(random, places) });
     let what = random.whole(0, 9);
     match if random.rare(11, 12, 0).is_some() { 9 } else { what } {
         0..=5 => {

@@ -5,7 +5,7 @@ use elbowroom_spatial::Vec3;
 
 use super::moving_object::{object_frame, text, vector};
 use super::settings::{Places, laws, settings};
-use super::{exchange, planned, region, robot};
+use super::{any_robot, exchange, planned, region};
 use crate::fuzz_cells::oracle::{Arm, Frame, Guarded};
 use crate::fuzz_cells::random::Random;
 use crate::fuzz_cells::spec::{CellSpec, ObjectSpec, RegionSpec, StepSpec, Vector};
@@ -36,7 +36,7 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     }
     let mut spec = settings(random);
     laws(&mut spec, random);
-    spec.robots.push(robot::any(random, places));
+    spec.robots.push(any_robot::any(random, places));
     if random.percent(10) {
         planned::plan(&mut spec, random);
     }

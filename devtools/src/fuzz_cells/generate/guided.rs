@@ -33,7 +33,7 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
         for _ in 0..TRIES {
             let mut object = object(&format!("o{i}"), tool.translation, random);
             if i == 0 && random.is_first() && !object.shape.contains("\"box\"") {
-                object.shape = "shape = \"box\"\nsize = [0.2, 0.25, 0.3]\n".to_owned();
+                object.shape = String::from("shape = \"box\"\nsize = [0.2, 0.25, 0.3]\n");
             }
             let mut with = spec.clone();
             with.objects.push(object);

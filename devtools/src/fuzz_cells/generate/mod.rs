@@ -1,5 +1,6 @@
 //! Random cells.
 
+mod any_robot;
 mod carried;
 mod cooperating;
 mod encounter;
@@ -183,7 +184,7 @@ fn without_grids(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSp
 
 fn stop(random: &mut Random, places: &Places<'_>) -> CellSpec {
     let mut spec = settings(random);
-    spec.robots.push(robot::any(random, places));
+    spec.robots.push(any_robot::any(random, places));
     if random.percent(15) {
         let mut second = robot::small(random);
         second.at = [random.between(-1.5, 1.5), random.between(-1.5, 1.5), random.between(-0.5, 0.5)];

@@ -1,97 +1,21 @@
-//! Rare features: keys that any robot may have, and models that few cells have. Each of the first cells has one of them.
+//! Rare features of cells. Each of the first cells has one of them.
 
 use elbowroom_cell::Cell;
 use elbowroom_spatial::Vec3;
 
 use super::region::point_on_the_path;
-use super::settings::{Places, program};
-use super::{goals, robot};
+use super::settings::Places;
+use super::{any_robot, goals};
 use crate::fuzz_cells::oracle;
 use crate::fuzz_cells::random::{Random, rounded};
-use crate::fuzz_cells::spec::{
-    CellFile, CellSpec, ExtraKey, Model, RobotSpec, SceneBox, SceneSpec, SolidSpec, StepSpec, Turns,
-};
+use crate::fuzz_cells::spec::{CellFile, CellSpec, ExtraKey, Model, RobotSpec, SceneBox, SceneSpec, StepSpec, Turns};
 
-/// Number of features of robots.
-const OF_ROBOTS: u64 = 8;
-/// Tries to make a robot within its limits.
-const TRIES: usize = 16;
-/// Each so many of the first cells have one of the rare models. Robots with meshes take long.
-const OF_MODELS: u64 = 23;
 /// Number of features of cells.
 const OF_CELLS: u64 = 7;
 
-/// A robot with a model that few cells have; `None` for most cells.
-pub fn robot(random: &mut Random, places: &Places<'_>) -> Option<RobotSpec> {
-    if let Some(mut r) = random.rare(0, OF_MODELS, 2) {
-        return Some(drawn_arm(&mut r));
-    }
-    let unit = random.rare(1, OF_MODELS, 2);
-    let near = random.rare(2, OF_MODELS, 2);
-    let chosen = random.rare(3, OF_MODELS, 2);
-    let has_unit = unit.is_some();
-    let (mut own, places) = (unit.or(near).or(chosen)?, Places { data: None, ..*places });
-    // Random joint values may be beyond the limits.
-    let alone = CellSpec { tick_ms: 4.0, max_s: 1.0, ..CellSpec::default() };
-    let is_read = |r: &RobotSpec| CellSpec { robots: vec![r.clone()], ..alone.clone() }.parse(places.cells).is_ok();
-    let mut robot = robot::example(&mut own, &places);
-    for _ in 0..TRIES {
-        if is_read(&robot) {
-            break;
-        }
-        robot = robot::example(&mut own, &places);
-    }
-    if has_unit {
-        // The unit of meshes that state none.
-        robot.keys.push("unit = \"m\"".into());
-    }
-    Some(robot)
-}
-
-/// A robot of a VRML model, with its joints in a file.
-fn drawn_arm(random: &mut Random) -> RobotSpec {
-    let mut place = || vec![random.between(-2.9, 2.9), random.between(-0.39, 0.39)];
-    let (start, targets) = (place(), vec![place(), place()]);
-    let model = Model::File("model = \"arm.wrl\"\njoints = \"arm_axes.toml\"\n".into());
-    let mut robot = robot::bare(model, start, random);
-    robot.acceleration = Some(random.scaled(2.0, 20.0));
-    robot.program.steps = program(targets, None, random);
-    robot
-}
-
-/// Adds keys to a robot.
-pub fn keys(robot: &mut RobotSpec, random: &mut Random) {
-    let rare: Vec<Option<Random>> = (0..OF_ROBOTS).map(|slot| random.rare(slot, OF_ROBOTS, 3)).collect();
-    let [base, names, ignore, speed, mesh, tool, home, flange] = rare.try_into().expect("there are eight");
-    if let Some(mut r) = speed {
-        robot.keys.push(format!("speed = {}", r.scaled(0.3, 4.0)));
-    }
-    robot.starts_at_home = home.is_some();
-    if let Some(mut r) = tool.filter(|_| robot.hand.tool_box.is_none()) {
-        robot.hand.tool_mesh = Some((r.vector(0.1), r.vector(3.0)));
-    }
-    let Model::Dh { rows, links, has_names } = &mut robot.model else { return };
-    let last = rows.len();
-    if let Some(mut r) = base {
-        let solid = robot::solid(&mut r, [0.0; 3], 0.25).text();
-        robot.keys.push(format!("base_link = {}", if r.percent(50) { solid } else { format!("[{solid}]") }));
-    }
-    *has_names = names.is_some();
-    if ignore.is_some() && last > 1 {
-        robot.keys.push(format!("ignore = [[\"link_1\", \"link_{last}\"]]"));
-    }
-    if let Some(mut r) = mesh {
-        let unit = r.one(&["m", "cm", "in", "mm"]);
-        links[last - 1].push(SolidSpec::Mesh { at: r.vector(0.1), rpy: r.vector(3.0), unit });
-    }
-    if let Some(mut r) = flange {
-        robot.keys.push(format!("flange = \"link_{}\"", r.whole(last.max(2) - 1, last)));
-    }
-}
-
 /// Lets moves of robots with six joints end at poses, near the joint values or in their configuration.
 pub fn goals(spec: &mut CellSpec, cell: &Cell, random: &mut Random) {
-    let (near, chosen) = (random.rare(2, OF_MODELS, 30), random.rare(3, OF_MODELS, 30));
+    let (near, chosen) = (random.rare(2, any_robot::OF_MODELS, 30), random.rare(3, any_robot::OF_MODELS, 30));
     let is_near = near.is_some();
     if near.or(chosen).is_some() {
         goals::some(spec, cell, is_near);

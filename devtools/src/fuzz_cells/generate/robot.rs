@@ -2,7 +2,6 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::rare;
 use super::settings::{Places, program, stop_time};
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{DhRow, HandSpec, Model, ProgramSpec, RobotSpec, SolidSpec};
@@ -21,21 +20,6 @@ const REAL: [&str; 4] = [
     "urdf/fanuc_lrmate200ic5l/lrmate200ic5l.urdf",
     "urdf/abb_irb2400/irb2400.urdf",
 ];
-
-/// Makes any robot, with a program, at the origin.
-pub fn any(random: &mut Random, places: &Places<'_>) -> RobotSpec {
-    let mut robot = rare::robot(random, places).unwrap_or_else(|| match random.whole(0, 99) {
-        0..=5 => from_file(random, places),
-        6..=25 => gantry(random),
-        _ => arm(random),
-    });
-    if random.percent(50) {
-        robot.rpy = [random.between(-PI, PI), random.between(-FRAC_PI_2, FRAC_PI_2), random.between(-PI, PI)];
-    }
-    equip(&mut robot, random);
-    rare::keys(&mut robot, random);
-    robot
-}
 
 /// Makes a robot of six axes from a file, with a program.
 pub fn example(random: &mut Random, places: &Places<'_>) -> RobotSpec {
@@ -77,7 +61,8 @@ pub fn bare(model: Model, start: Vec<f64>, random: &mut Random) -> RobotSpec {
     }
 }
 
-fn equip(robot: &mut RobotSpec, random: &mut Random) {
+/// Adds a tool centre point, a tool and a load to some robots.
+pub fn equip(robot: &mut RobotSpec, random: &mut Random) {
     if random.percent(40) {
         robot.hand.tcp = Some([random.between(-0.1, 0.1), 0.0, random.between(0.0, 0.4)]);
     }
@@ -104,7 +89,8 @@ fn gantry(random: &mut Random) -> RobotSpec {
     finish(rows, Some((0.1, 3.0)), random)
 }
 
-fn arm(random: &mut Random) -> RobotSpec {
+/// Makes an arm of revolute and prismatic joints.
+pub fn arm(random: &mut Random) -> RobotSpec {
     let joints = random.whole(1, 6);
     let rows: Vec<DhRow> = (0..joints)
         .map(|_| {

@@ -1,7 +1,7 @@
 //! Random cells with robots that exchange their tools.
 
 use super::settings::{Places, laws, settings};
-use super::{exchange, region, robot};
+use super::{any_robot, exchange, region};
 use crate::fuzz_cells::random::Random;
 use crate::fuzz_cells::spec::{CellSpec, HandSpec, Model, RobotSpec, StepSpec, ToolSpec};
 
@@ -18,7 +18,7 @@ pub fn cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     }
     let mut spec = settings(random);
     laws(&mut spec, random);
-    let mut one = robot::any(random, places);
+    let mut one = any_robot::any(random, places);
     equip(&mut one, random, 0.8);
     if random.percent(30) {
         one.program.repeat = 2;

@@ -1,5 +1,7 @@
 //! Keys and tables of a cell that have nothing to do with what its kind tests, and the form of its poses.
 
+use std::fmt::Write as _;
+
 use super::files::CellFile;
 use super::scene::SceneSpec;
 
@@ -59,7 +61,9 @@ impl Turns {
             };
             let numbers = part.split_once(']').and_then(|(numbers, rest)| Some((three(numbers)?, rest)));
             match numbers.filter(|_| is_quaternion) {
-                Some((rpy, rest)) => t += &format!("quaternion = {:?}{rest}", quaternion(rpy)),
+                Some((rpy, rest)) => {
+                    let _ = write!(t, "quaternion = {:?}{rest}", quaternion(rpy));
+                }
                 None => t.extend([KEY, part]),
             }
         }

@@ -3,6 +3,7 @@
 //! The oracle computes them from the numbers of the text, by its own formulas of roll, pitch and yaw, of quaternions and
 //! of Denavit and Hartenberg.
 
+mod compare;
 mod goals;
 mod regions;
 mod robots;
@@ -19,11 +20,9 @@ use toml::{Table, Value};
 use super::arm::Arm;
 use super::findings::{Finding, Findings};
 use super::frame::Frame;
+use compare::{Off, compare};
 pub use scenes::check as check_scenes;
 use written::Written;
-
-/// Difference of numbers that are equal but for rounding, m and rad.
-const ROUNDING: f64 = 1e-9;
 
 /// Adds a finding for each thing that was read otherwise than the text states.
 pub fn check(text: &str, cell: &Cell, recording: &Recording, findings: &mut Findings) {
@@ -38,18 +37,6 @@ pub fn check(text: &str, cell: &Cell, recording: &Recording, findings: &mut Find
     let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
     goals::check(&file, cell, recording, &arms, findings);
     robots::check_speeds(&file, cell, recording, findings);
-}
-
-/// What was read otherwise, and by how much.
-type Off = Vec<(String, f64)>;
-
-/// Compares a frame with that of the text; without a stated turn only the places.
-fn compare(what: String, expected: &Frame, is_turned: bool, read: &Frame, off: &mut Off) {
-    let turn = if is_turned { expected.turn_to(read).length() } else { 0.0 };
-    let by = expected.at.distance(read.at).max(turn);
-    if !(by <= ROUNDING) {
-        off.push((what, by));
-    }
 }
 
 fn objects(file: &Written, cell: &Cell, off: &mut Off) {

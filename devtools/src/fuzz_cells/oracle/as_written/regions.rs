@@ -4,8 +4,8 @@ use elbowroom_cell::{Cell, CellRegion};
 use elbowroom_spatial::Vec3;
 use toml::{Table, Value};
 
+use super::compare::{Off, ROUNDING, compare};
 use super::written::Written;
-use super::{Off, ROUNDING, compare};
 use crate::fuzz_cells::oracle::frame::Frame;
 
 pub fn check(file: &Written, cell: &Cell, off: &mut Off) {

@@ -6,8 +6,8 @@ use elbowroom_sim::Recording;
 use elbowroom_spatial::Vec3;
 use toml::{Table, Value};
 
+use super::compare::{Off, ROUNDING, compare};
 use super::written::{Written, is_turned, number, numbers};
-use super::{Off, ROUNDING, compare};
 use crate::fuzz_cells::oracle::arm::Arm;
 use crate::fuzz_cells::oracle::findings::{Finding, Findings};
 use crate::fuzz_cells::oracle::frame::Frame;

@@ -4,7 +4,7 @@ use elbowroom_cell::Cell;
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Vec3;
 
-use super::ROUNDING;
+use super::compare::ROUNDING;
 use crate::fuzz_cells::oracle::arm::Arm;
 use crate::fuzz_cells::oracle::findings::{Finding, Findings};
 use crate::fuzz_cells::oracle::frame::Frame;
@@ -38,13 +38,12 @@ fn place(scene: &SceneSpec, one: &SceneBox, cell: &Cell) -> Frame {
     let robot = &cell.robots[0];
     let link = robot.robot.chain.link(&one.frame);
     let is_placed = scene.frame.as_deref().unwrap_or("world") == one.frame;
-    let frame = match link.filter(|_| !is_placed) {
-        Some(link) => Arm::new(robot).frames(&robot.start)[link.0],
-        None => {
-            let [roll, pitch, yaw] = scene.rpy;
-            let turn = Frame::turn(Vec3::Z, yaw).then(&Frame::turn(Vec3::Y, pitch)).then(&Frame::turn(Vec3::X, roll));
-            Frame::shift(vector(scene.at)).then(&turn)
-        }
+    let frame = if let Some(link) = link.filter(|_| !is_placed) {
+        Arm::new(robot).frames(&robot.start)[link.0]
+    } else {
+        let [roll, pitch, yaw] = scene.rpy;
+        let turn = Frame::turn(Vec3::Z, yaw).then(&Frame::turn(Vec3::Y, pitch)).then(&Frame::turn(Vec3::X, roll));
+        Frame::shift(vector(scene.at)).then(&turn)
     };
     let [x, y, z, w] = one.turn;
     let axis = Vec3::new(x, y, z);

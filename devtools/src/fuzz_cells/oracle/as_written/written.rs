@@ -4,7 +4,7 @@ use elbowroom_proximity::Shape;
 use elbowroom_spatial::Vec3;
 use toml::{Table, Value};
 
-use super::{Off, ROUNDING};
+use super::compare::{Off, ROUNDING};
 use crate::fuzz_cells::oracle::frame::Frame;
 
 /// Extent of the mesh of a corner along each axis, in its unit.
@@ -24,7 +24,7 @@ impl Written {
         let units = file.get("units")?.as_table()?;
         let length = if units.get("length")?.as_str()? == "mm" { 1e-3 } else { 1.0 };
         let angle = if units.get("angle")?.as_str()? == "deg" { std::f64::consts::PI / 180.0 } else { 1.0 };
-        Some(Self { length, angle, file })
+        Some(Self { file, length, angle })
     }
 
     /// The tables `[WORD.NAME]`, with their names.
