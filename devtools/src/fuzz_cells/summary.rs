@@ -16,10 +16,7 @@ pub struct Summary {
     kind: &'static str,
     /// Number of cells that were run.
     pub cells: usize,
-    /// Numbers of cells that the cell file or the programs refuse, by reason.
-    refused: BTreeMap<String, usize>,
-    /// Number of refused cells whose reason is not known.
-    refused_for_other_reasons: usize,
+    refused: RefusedCells,
     robots: usize,
     finished: usize,
     slowed: usize,
@@ -34,6 +31,20 @@ pub struct Summary {
     pub coverage: Coverage,
     /// Failing cells as files, each with its findings.
     pub files: Vec<(PathBuf, String)>,
+}
+
+/// Numbers of cells that the cell file or the programs refuse.
+#[derive(Debug, Default)]
+struct RefusedCells {
+    by_reason: BTreeMap<String, usize>,
+    /// Those whose reason is not known.
+    unknown: usize,
+}
+
+impl RefusedCells {
+    fn all(&self) -> usize {
+        self.by_reason.values().sum()
+    }
 }
 
 /// Numbers of cells with findings: by the name of the finding, and of all.
@@ -125,7 +136,7 @@ impl Summary {
 
     /// Number of cells with findings, and of those that are refused for a reason that is not known.
     pub fn failed(&self) -> usize {
-        self.failing.all + self.refused_for_other_reasons
+        self.failing.all + self.refused.unknown
     }
 
     pub(super) fn add(&mut self, run: &CheckedRun) {
@@ -144,18 +155,18 @@ impl Summary {
 
     pub fn refuse(&mut self, case: u64, why: &str) {
         let is_known = is_known_refusal(why);
-        self.refused_for_other_reasons += usize::from(!is_known);
+        self.refused.unknown += usize::from(!is_known);
         // Without folders, numbers and names a message stands for many.
         let message = why.lines().next().unwrap_or("");
         let message = message.split_once("fuzz.toml:").map_or(message, |(_, message)| message);
         let shown = if is_known { 90 } else { 400 };
         let short: String = message.chars().filter(|c| !c.is_ascii_digit()).take(shown).collect();
         let short = if is_known { short } else { format!("not known, as of case {case}: {short}") };
-        *self.refused.entry(short).or_default() += 1;
+        *self.refused.by_reason.entry(short).or_default() += 1;
     }
 
     pub fn progress(&self) -> String {
-        let refused: usize = self.refused.values().sum();
+        let refused = self.refused.all();
         let found: Vec<String> = self.failing.by_name.iter().map(|(name, count)| format!(", {name} {count}")).collect();
         format!(
             "{}: {} cells, {refused} refused, {} with findings{}",
@@ -170,7 +181,7 @@ impl Summary {
         let share = |n: usize| format!("{:.1} %", 100.0 * n as f64 / self.robots.max(1) as f64);
         let mut rows = vec![
             ("cells", self.cells.to_string()),
-            ("refused", self.refused.values().sum::<usize>().to_string()),
+            ("refused", self.refused.all().to_string()),
             ("simulated s", format!("{:.0}", self.simulated_s)),
             ("pairs watched", self.watched.to_string()),
             ("robots slowed", share(self.slowed)),
@@ -195,7 +206,7 @@ pub fn print(summaries: &[Summary]) {
         println!("{:<18}{values}", rows[0][i].0);
     }
     for s in summaries {
-        for (why, count) in &s.refused {
+        for (why, count) in &s.refused.by_reason {
             println!("{} refused {count}: {why}", s.kind);
         }
         for (file, words) in &s.files {
@@ -214,8 +225,8 @@ pub fn json(seed: u64, summaries: &[Summary], keys: Option<(&Coverage, &Path)>) 
         let mut of_kind = serde_json::json!({
             "kind": s.kind,
             "cells": s.cells,
-            "refused": s.refused.values().sum::<usize>(),
-            "refused_for_other_reasons": s.refused_for_other_reasons,
+            "refused": s.refused.all(),
+            "refused_for_other_reasons": s.refused.unknown,
             "robots": s.robots,
             "finished": s.finished,
             "slowed": s.slowed,

@@ -84,16 +84,21 @@ fn try_cell(random: &mut Random, places: &Places<'_>) -> CellSpec {
     });
     spec.guidance = Some(guidance);
     if random.first_or_percent(30) {
-        let mut region = region::at(&spec, 0, on_the_way.map(rounded), "g0", random);
-        if random.in_turn(2) == 0 {
-            (region.kind, region.warning, region.robots) = ("exchange", region.warning.max(0.05), Vec::new());
-        }
-        let with = CellSpec { regions: vec![region], ..spec.clone() };
-        if region::starts_outside(&with, places.cells) {
-            spec = with;
-        }
+        add_region(&mut spec, on_the_way, places, random);
     }
     spec
+}
+
+/// Adds a forbidden or an exchange region that the first robot starts outside of.
+fn add_region(spec: &mut CellSpec, at: [f64; 3], places: &Places<'_>, random: &mut Random) {
+    let mut region = region::at(spec, 0, at.map(rounded), "g0", random);
+    if random.in_turn(2) == 0 {
+        (region.kind, region.warning, region.robots) = ("exchange", region.warning.max(0.05), Vec::new());
+    }
+    let with = CellSpec { regions: vec![region], ..spec.clone() };
+    if region::starts_outside(&with, places.cells) {
+        *spec = with;
+    }
 }
 
 fn keys(count: usize, gap_m: f64, random: &mut Random) -> String {

@@ -58,18 +58,9 @@ fn distances(
         let is_of = |f: &&CellFixture| f.tool == Some(operator.tool) && f.protects == ObjectId(object);
         fixtures.iter().enumerate().find(|(_, f)| is_of(f) && is_on(f, recording, t_s))
     };
-    // The shields that files have, in the frames of their objects.
-    let read = |f: &CellFixture| match &f.shield {
-        ShieldSource::Mesh(mesh) => Some(OracleSolid::eroded(&Shape::Mesh(mesh.clone()), 0.0)),
-        ShieldSource::Generated { .. } => None,
-    };
-    let read_shields: Vec<Option<OracleSolid>> = fixtures.iter().map(read).collect();
+    let from_files = shields_from_files(fixtures);
     let tool_link = cell.robots[robot].flange.0;
-    let pairs: Vec<(&Guarded, usize, f64)> = parts
-        .iter()
-        .flat_map(|part| (0..objects.len()).map(move |object| (part, object)))
-        .map(|(part, object)| (part, object, if part.is_tool() { operator.settings.least_gap_m } else { 0.0 }))
-        .collect();
+    let pairs = pairs(&parts, objects.len(), operator.settings.least_gap_m);
     // How much nearer each pair may have come than at its last measurement, m.
     let mut slack_m = vec![0.0; pairs.len()];
     let lever_arms: Vec<Vec<f64>> = pairs.iter().map(|(part, ..)| arm.lever_arms(part.link, part.radius_m)).collect();
@@ -79,31 +70,26 @@ fn distances(
         let before = &samples[k.saturating_sub(1)].q;
         let t_s = sample.t_s;
         for (i, &(part, object, least_m)) in pairs.iter().enumerate() {
+            let (own_solid, at) = &objects[object];
             let shield = shield_of(object, t_s).filter(|_| part.link == tool_link);
-            if let Some(shield) = shield {
-                // Nothing is known of what happens meanwhile.
-                slack_m[i] = 0.0;
-                let Some(solid) = &read_shields[shield.0] else { continue };
-                let distance_m = part.distance(&frames, solid, &objects[object].1, FAR_M).upper;
-                if distance_m < least_m - TOLERANCE_M {
-                    findings.list.push(Finding::TooNear { robot, object, t_s, distance_m, least_m });
-                    return;
-                }
-                continue;
-            }
+            // A shield that is on takes the place of its object; a generated one is judged below.
+            let solid = match &shield {
+                Some((shield, _)) => from_files[*shield].as_ref(),
+                None => Some(own_solid),
+            };
             let motion = sample.q.iter().zip(before).zip(&lever_arms[i]);
             slack_m[i] -= motion.map(|((now, before), lever)| (now - before).abs() * lever).sum::<f64>();
-            if slack_m[i] > 0.0 {
-                continue;
+            if shield.is_some() {
+                slack_m[i] = 0.0;
             }
-            let (solid, at) = &objects[object];
+            let Some(solid) = solid.filter(|_| slack_m[i] <= 0.0) else { continue };
             let distance = part.distance(&frames, solid, at, FAR_M);
             if distance.upper < least_m - TOLERANCE_M || distance.upper <= 0.0 {
                 let distance_m = distance.upper;
                 findings.list.push(Finding::TooNear { robot, object, t_s, distance_m, least_m });
                 return;
             }
-            slack_m[i] = distance.lower - least_m;
+            slack_m[i] = if shield.is_some() { 0.0 } else { distance.lower - least_m };
         }
         for (object, (_, at)) in objects.iter().enumerate() {
             if let Some(inside_m) = shield_of(object, t_s).and_then(|(_, f)| inside_shield(cell, f, &frames, at)) {
@@ -113,6 +99,21 @@ fn distances(
             }
         }
     }
+}
+
+/// The pairs of parts and objects, with the distance that they keep, m.
+fn pairs(parts: &[Guarded], objects: usize, least_gap_m: f64) -> Vec<(&Guarded, usize, f64)> {
+    let all = parts.iter().flat_map(|part| (0..objects).map(move |object| (part, object)));
+    all.map(|(part, object)| (part, object, if part.is_tool() { least_gap_m } else { 0.0 })).collect()
+}
+
+/// The shields that files have, in the frames of their objects.
+fn shields_from_files(fixtures: &[CellFixture]) -> Vec<Option<OracleSolid>> {
+    let from_file = |f: &CellFixture| match &f.shield {
+        ShieldSource::Mesh(mesh) => Some(OracleSolid::eroded(&Shape::Mesh(mesh.clone()), 0.0)),
+        ShieldSource::Generated { .. } => None,
+    };
+    fixtures.iter().map(from_file).collect()
 }
 
 /// Whether a fixture was on at a time, by the events of the run.
