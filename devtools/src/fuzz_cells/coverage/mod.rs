@@ -226,7 +226,13 @@ mod tests {
         );
         assert_eq!(
             found.features,
-            BTreeSet::from([Feature::Tool, Feature::Region, Feature::MovingRegion, Feature::Carrier])
+            BTreeSet::from([
+                Feature::Tool,
+                Feature::Region,
+                Feature::MovingRegion,
+                Feature::Carrier,
+                Feature::PlannedMove
+            ])
         );
         let mut coverage = Coverage::default();
         coverage.add(&found);

@@ -5,8 +5,8 @@ use elbowroom_robot::RobotId;
 use elbowroom_sim::{InputFault, InputFaultKind, Recording, RunOptions, simulate};
 
 use super::{
-    Arm, Finding, Findings, Guarded, Promises, check, mechanisms, motion::OracleMotion, readings, recorded,
-    while_inside,
+    Arm, Finding, Findings, Guarded, Promises, check, mechanisms, motion::OracleMotion, planned_paths, readings,
+    recorded, while_inside,
 };
 use crate::fuzz_cells::spec::{RecordingLayout, RecordingSpec};
 
@@ -185,4 +185,19 @@ fn a_robot_that_leaves_its_recording_or_is_ahead_of_it_is_found() {
     assert!(matches!(found(&|t_s| at(t_s - 0.09)), Some(Finding::OffRecording { ahead_s: Some(_), .. })));
     let leaves = |t_s: f64| at(t_s - 0.1) - if t_s > 0.45 { 0.2 } else { 0.0 };
     assert!(matches!(found(&leaves), Some(Finding::OffRecording { ahead_s: None, .. })));
+}
+
+#[test]
+fn a_planned_path_through_an_object_is_found() {
+    let text = CELL.replace("move = \"joint\", to = [0.5]", "move = \"planned\", to = [0.5]");
+    let free = simulate(&Cell::parse("test.toml", &text).unwrap(), &RunOptions::default()).unwrap();
+    let touched = |x: f64| {
+        let object = format!("[object.post]\nshape = \"sphere\"\nradius = 0.1\nat = [{x}, 0, 0.3]\n");
+        let cell = Cell::parse("test.toml", &format!("{text}{object}")).unwrap();
+        let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
+        let mut findings = Findings::default();
+        planned_paths::check(&cell, &free.recording, &arms, &mut findings);
+        matches!(findings.list[..], [Finding::Touched { robot: 0, .. }])
+    };
+    assert!(touched(0.0) && touched(0.11) && !touched(0.13));
 }

@@ -102,3 +102,41 @@ fn a_robot_that_is_faster_than_its_speed_is_found() {
     let found = findings("speed = 80", "speed = 85");
     assert!(found.iter().any(|f| matches!(f, Finding::TooFast { robot: 0, .. })), "{found:?}");
 }
+
+const GOAL: &str = r#"
+version = 1
+units = { length = "m", angle = "rad" }
+[robot.a]
+dh = [
+  { a = 0.4, min = -3, max = 3, speed = 2 }, { a = 0.3, alpha = 1.57, min = -3, max = 3, speed = 2 },
+  { d = 0.2, alpha = -1.57, min = -3, max = 3, speed = 2 }, { d = 0.3, alpha = 1.57, min = -3, max = 3, speed = 2 },
+  { alpha = -1.57, min = -3, max = 3, speed = 2 }, { d = 0.1, min = -3, max = 3, speed = 2 },
+]
+[program.a]
+steps = [{ move = "joint", to = [0.3, 0.2, 0.1, 0.4, 0.5, 0.6] }]
+"#;
+
+#[test]
+fn a_move_that_misses_the_goal_of_its_text_is_found() {
+    let cell = Cell::parse(Path::new("test.toml"), GOAL).unwrap();
+    let recording = simulate(&cell, &RunOptions::default()).unwrap().recording;
+    let tcp = cell.robots[0].tcp_in_root(&[0.3, 0.2, 0.1, 0.4, 0.5, 0.6]);
+    let findings = |by: f64, choice: &str| {
+        let [x, y, z] = tcp.translation.to_array();
+        let [a, b, c, d] = tcp.rotation.to_quaternion_xyzw();
+        let to = format!("{{ at = [{x}, {y}, {}], quaternion = [{a}, {b}, {c}, {d}]{choice} }}", z + by);
+        let text = GOAL.replace("[0.3, 0.2, 0.1, 0.4, 0.5, 0.6]", &to);
+        let mut findings = Findings::default();
+        check(&text, &cell, &recording, &mut findings);
+        findings.list.len()
+    };
+    assert_eq!(findings(0.0, ""), 0);
+    assert_eq!(findings(1e-4, ""), 1);
+    assert_eq!(
+        (findings(0.0, ", configuration = [\"no_flip\"]"), findings(0.0, ", configuration = [\"flip\"]")),
+        (0, 1)
+    );
+    // The end, and the whole way to it.
+    assert_eq!(findings(0.0, ", near = [0.3, 0.2, 0.1, 0.4, 0.5, 0.6]"), 0);
+    assert_eq!(findings(0.0, ", near = [0.3, 0.2, 0.1, 0.4, 0.5, 0.7]"), 2);
+}
