@@ -122,8 +122,9 @@ fn avoidance(lines: &mut Vec<String>, random: &mut Random) {
     some(lines, 50, random, |r| format!("plan_ms = {}", r.whole(0, 500)));
 }
 
-/// Adds a line in this percentage of cases.
+/// Adds a line in this percentage of cases, and in more of the first ones.
 fn some(lines: &mut Vec<String>, percent: u32, random: &mut Random, line: impl Fn(&mut Random) -> String) {
+    let percent = if random.is_first() { percent.max(60) } else { percent };
     if random.percent(percent) {
         lines.push(line(random));
     }

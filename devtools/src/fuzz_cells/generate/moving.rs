@@ -59,7 +59,7 @@ fn belt(direction: Vector, random: &mut Random) -> BeltSpec {
         }
         BeltTravel::Table(rows)
     };
-    let wrap = random.percent(50).then(|| random.between(0.2, 2.0));
+    let wrap = random.first_or_percent(50).then(|| random.between(0.2, 2.0));
     BeltSpec { name: "belt".into(), direction, travel, wrap }
 }
 
