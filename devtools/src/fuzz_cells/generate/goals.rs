@@ -4,7 +4,7 @@ use elbowroom_cell::Cell;
 use elbowroom_spatial::Vec3;
 
 use crate::fuzz_cells::oracle::{Arm, Frame};
-use crate::fuzz_cells::spec::{CellSpec, GoalSpec, StepSpec, Vector, list};
+use crate::fuzz_cells::spec::{CellSpec, GoalSpec, Model, StepSpec, Vector, list};
 
 /// Number of joints of a robot whose configuration can be chosen.
 const JOINTS: usize = 6;
@@ -18,12 +18,14 @@ pub fn some(spec: &mut CellSpec, cell: &Cell, is_near: bool) {
         if robot.start.len() != JOINTS || !r.payload.tools.is_empty() || !robot.program.steps.iter().all(is_plain) {
             continue;
         }
+        // The arms of files have spherical wrists.
+        let has_wrist = matches!(robot.model, Model::File(_));
         let arm = Arm::new(r);
         for step in &mut robot.program.steps {
             let StepSpec::Joint { to, .. } = step else { continue };
             let choice = if is_near {
                 format!(", near = {}", list(to))
-            } else if to[4].abs() > TURNED_RAD {
+            } else if to[4].abs() > TURNED_RAD && has_wrist {
                 let wrist = if to[4] > 0.0 { "no_flip" } else { "flip" };
                 format!(", configuration = [\"{wrist}\"]")
             } else {
