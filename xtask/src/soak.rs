@@ -17,7 +17,7 @@ struct Run {
 const LONG: (&str, &str) = ("ELBOWROOM_LONG", "1");
 
 /// The runs; `docs/measurements/soak.md` has their results.
-const RUNS: [Run; 17] = [
+const RUNS: [Run; 18] = [
     Run {
         name: "geometry",
         what: "random pairs of shapes and meshes, motions and sweeps beside their oracles, up to a million each",
