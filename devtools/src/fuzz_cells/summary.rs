@@ -119,6 +119,8 @@ const KNOWN_REFUSALS: &[&str] = &[
     "is a step of the mechanism",
     // A map does not know the regions that its robot must go around.
     "the path through free cells is not proven free",
+    // There may be no path, and a search has a time limit.
+    "no path",
     // A guided tool, or a planned move, may begin or end at an object.
     "the tool starts",
     "the start of robot",
