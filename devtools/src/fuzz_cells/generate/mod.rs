@@ -121,7 +121,7 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
         spec.objects.push(floor(random));
     }
     extras::add(&mut spec, random);
-    if spec.repeat == 0 && can_repeat(kind, &spec) && random.percent(10) {
+    if spec.repeat == 0 && can_repeat(kind, &spec) && (random.percent(10) || random.rare(3, 5, 0).is_some()) {
         spec.repeat = 2;
     }
     // A planned or guided robot has a scene beside it, or none.
