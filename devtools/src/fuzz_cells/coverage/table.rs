@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use super::{Coverage, known_keys, untried};
+use super::{Coverage, known_keys};
 
 /// Number of the least covered pairs that the summary names.
 const NAMED: usize = 5;
@@ -53,7 +53,7 @@ impl Coverage {
         let (seen, possible) = self.pairs_of_keys();
         format!(
             "{} of {} keys in {} cells, {seen} of {possible} pairs of them; most frequent keys that are never together: {}",
-            keys.len() - untried().len(),
+            (0..keys.len()).filter(|key| self.with(*key) > 0).count(),
             keys.len(),
             self.files,
             named.collect::<Vec<String>>().join("; ")
