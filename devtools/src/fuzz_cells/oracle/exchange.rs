@@ -1,6 +1,7 @@
 //! Checks of exchange regions: two robots are never inside, and no deadlock is silent.
 
 use elbowroom_monitor::RegionKind;
+use elbowroom_sim::VirtualRobotTrack;
 use elbowroom_spatial::Vec3;
 
 use super::findings::{Finding, Findings};
@@ -173,6 +174,12 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
         let (then, now) = (&motion.q[ticks - 1 - held][robot], &motion.q[ticks - 1][robot]);
         !track.finished && then.iter().zip(now).all(|(a, b)| (a - b).abs() < NO_MOTION)
     };
+    // Robots that act as one stand for a reason that is reported with their work-piece.
+    let stands_with_others = |robot: usize| {
+        let name = &motion.recording.robots[robot].name;
+        let stands = |v: &VirtualRobotTrack| v.robots.contains(name) && v.samples.last().is_some_and(|s| s.is_stopped);
+        motion.recording.virtual_robots.iter().any(|v| stands(v) && !v.stops.is_empty())
+    };
     // While a robot moves, for example in a run that was cut off, robots at rest may still be granted a region.
     if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !at_rest(r)) {
         return;
@@ -189,7 +196,8 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
     }
     // Overlapping regions form one crossing: a robot in the zone of one of them is in all.
     let in_crossing: Vec<Vec<bool>> = in_zone.iter().map(|zones| spread(motion, zones)).collect();
-    let robots: Vec<usize> = (0..in_zone.len()).filter(|r| at_rest(*r) && in_zone[*r].contains(&true)).collect();
+    let waits = |r: &usize| at_rest(*r) && in_zone[*r].contains(&true) && !stands_with_others(*r);
+    let robots: Vec<usize> = (0..in_zone.len()).filter(waits).collect();
     let meet = |a: usize, b: usize| a != b && in_crossing[a].iter().zip(&in_crossing[b]).any(|(a, b)| *a && *b);
     let circle: Vec<usize> = robots.iter().copied().filter(|a| robots.iter().any(|b| meet(*a, *b))).collect();
     // A robot that has finished in the zone blocks the others for good: they wait, but not in a cycle.
