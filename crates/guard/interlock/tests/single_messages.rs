@@ -29,7 +29,13 @@ fn guard(robot: usize, checksum: u64) -> Guard {
 /// Sends a message to the arbiter, and all its answers to this guard; returns the events. Robot 0 is in its warning
 /// zone, the other robot outside.
 fn exchange(guard: &mut Guard, arbiter: &mut Arbiter, now: Micros) -> Vec<ArbiterEvent> {
-    guard.observe(SLOT, if guard.robot() == RobotSlot(0) { Occupancy::Warning } else { Occupancy::Outside });
+    let occupancy = if guard.robot() == RobotSlot(0) { Occupancy::Warning } else { Occupancy::Outside };
+    report(guard, occupancy, arbiter, now)
+}
+
+/// As [`exchange`], for a robot that was found there.
+fn report(guard: &mut Guard, occupancy: Occupancy, arbiter: &mut Arbiter, now: Micros) -> Vec<ArbiterEvent> {
+    guard.observe(SLOT, occupancy);
     let outputs = arbiter.receive(&guard.state(now), now);
     let robot = guard.robot();
     for reply in outputs.replies.iter().filter(|reply| reply.robot == robot) {
@@ -117,4 +123,27 @@ fn a_clear_does_not_reach_a_robot_that_obeys_another_arbiter() {
         other.receive(&reply).expect("it is the last one");
     }
     assert!(near.may_enter(SLOT, ms(2000)) && other.may_enter(SLOT, ms(2000)));
+}
+
+/// A robot at rest just before the border is committed, as it may not stop outside once it moves. An arbiter that has
+/// started again must not let it in before it knows where the other robots are: one of them may be inside.
+#[test]
+fn a_committed_robot_without_a_grant_does_not_enter_before_all_others_are_known() {
+    for (other, may_enter) in [(Occupancy::Outside, true), (Occupancy::Inside, false)] {
+        let mut arbiter = arbiter();
+        let mut guards = [guard(0, CHECKSUM), guard(1, CHECKSUM)];
+        let mut committed = |arbiter: &mut Arbiter, from: u64, to: u64| {
+            for now in (from..to).step_by(10).map(ms) {
+                report(&mut guards[0], Occupancy::Committed, arbiter, now);
+                assert!(from > 0 || !guards[0].may_enter(SLOT, now), "the other robot is unknown");
+                if from > 0 {
+                    report(&mut guards[1], other, arbiter, now);
+                }
+            }
+            guards[0].may_enter(SLOT, ms(to))
+        };
+        committed(&mut arbiter, 0, 500);
+        assert_eq!(arbiter.holder(SLOT), Some(RobotSlot(0)), "nobody else gets the slot");
+        assert_eq!(committed(&mut arbiter, 500, 1000), may_enter, "{other:?}");
+    }
 }

@@ -7,13 +7,14 @@ use elbowroom_kinematics::ChainState;
 use elbowroom_monitor::{Life, Monitor, RegionKind, SourceState};
 use elbowroom_robot::RobotId;
 
+use super::joints_heard::HeardJoints;
 use crate::messages::JointState;
 use crate::node::{AttachedVolumes, LOST};
 
 /// Where the robots and the measured sources of a cell are; `None` for those that are not heard.
 pub(crate) struct HeardPlaces {
     /// Joint states per robot.
-    pub(crate) joints: Vec<Option<JointState>>,
+    pub(crate) joints: Vec<Option<HeardJoints>>,
     /// States per measured source.
     pub(crate) measured: Vec<Option<SourceState>>,
 }
@@ -85,12 +86,12 @@ impl ClearanceQuery {
         let Self { alone, setups, monitors } = self;
         let HeardPlaces { joints: states, measured } = places;
         let chains: Vec<Option<ChainState>> =
-            alone.robots.iter().zip(states).map(|(r, s)| placed(r, s.as_ref())).collect();
+            alone.robots.iter().zip(states).map(|(r, s)| placed(r, s.as_ref().map(|heard| &heard.state))).collect();
         let of_robot = |own: &mut RobotMonitor| {
             let robot = own.robot;
             let state = states[robot.0].as_ref().filter(|_| chains[robot.0].is_some());
             let sources = sources(alone, &setups[robot.0].sources, &chains, measured, t_s);
-            let known = state.zip(sources).and_then(|(state, sources)| own.distance(alone, state, &sources));
+            let known = state.zip(sources).and_then(|(heard, sources)| own.distance(alone, heard, &sources));
             let (distance_m, stopping_m) =
                 known.map_or((None, 0.0), |(distance_m, stopping_m)| (Some(distance_m), stopping_m));
             Clearance { robot, distance_m, stopping_m }
@@ -102,14 +103,15 @@ impl ClearanceQuery {
 impl RobotMonitor {
     /// Distance of the robot with what it carries from the only region, and the way of its points until it stops and of the
     /// region until it counts, m.
-    fn distance(&mut self, cell: &Cell, state: &JointState, sources: &[SourceState]) -> Option<(f64, f64)> {
+    fn distance(&mut self, cell: &Cell, heard: &HeardJoints, sources: &[SourceState]) -> Option<(f64, f64)> {
+        let state = &heard.state;
         let are_attached = self.attached.apply(&state.attached, &mut self.monitor, |_, _| {});
         let mut query = self.monitor.region_distance(sources);
         query.set_q(&state.q);
         let nearest = query.distances(f64::INFINITY).map(|(_, metres)| metres).next();
         let going_on_s = UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s;
         let of_region: f64 = sources.iter().map(|source| source.motion.velocity.length() * going_on_s).sum();
-        let stopping_m = query.motion_bound(&state.q, &at_standstill(cell, self.robot, state)) + of_region;
+        let stopping_m = query.motion_bound(&state.q, &at_standstill(cell, self.robot, heard)) + of_region;
         nearest.filter(|_| are_attached).map(|metres| (metres, stopping_m))
     }
 }
@@ -122,15 +124,19 @@ fn with_only(cell: &Cell, region: &CellRegion) -> Cell {
 }
 
 /// Joint values at which the robot comes to rest, if it continues at its velocities until the region is in force and
-/// then brakes. A robot without velocities counts as at rest.
-fn at_standstill(cell: &Cell, robot: RobotId, state: &JointState) -> Vec<f64> {
+/// then brakes. Since the joints were read it may have accelerated to full speed. A robot without velocities counts as at
+/// rest then.
+fn at_standstill(cell: &Cell, robot: RobotId, HeardJoints { state, age_s }: &HeardJoints) -> Vec<f64> {
     let going_on_s = UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s;
     let limits = &cell.robots[robot.0].limits;
     let moved = |((q, limit), qd): ((&f64, &elbowroom_kinematics::JointLimits), &f64)| {
-        q + qd * (going_on_s + qd.abs() / (2.0 * limit.stop))
+        let since_m = limit.velocity.max(qd.abs()) * age_s;
+        q + since_m.copysign(*qd) + qd * (going_on_s + qd.abs() / (2.0 * limit.stop))
     };
     let has_velocities = state.qd.len() == state.q.len() && state.qd.iter().all(|v| v.is_finite());
-    if has_velocities { state.q.iter().zip(limits).zip(&state.qd).map(moved).collect() } else { state.q.clone() }
+    let at_rest = vec![0.0; state.q.len()];
+    let qd = if has_velocities { &state.qd } else { &at_rest };
+    state.q.iter().zip(limits).zip(qd).map(moved).collect()
 }
 
 fn placed(robot: &elbowroom_cell::CellRobot, state: Option<&JointState>) -> Option<ChainState> {
@@ -200,7 +206,11 @@ follow = { robot = "other", frame = "flange" }
 "#;
 
     fn heard(joints: [Option<JointState>; 2]) -> HeardPlaces {
-        HeardPlaces { joints: joints.into(), measured: Vec::new() }
+        HeardPlaces { joints: joints.map(|state| state.map(of_age(0.0))).into(), measured: Vec::new() }
+    }
+
+    fn of_age(age_s: f64) -> impl Fn(JointState) -> HeardJoints {
+        move |state| HeardJoints { state, age_s }
     }
 
     fn at(q: f64) -> JointState {
@@ -279,7 +289,7 @@ follow = { encoder = "belt" }
         let clearance = |travel_m: Option<f64>| {
             let (pose, motion) = cell.frame_sources.encoders[0].displacement(travel_m.unwrap_or(0.0), 0.3);
             let measured = vec![travel_m.map(|_| SourceState { pose, motion, stamp_s: 0.0 })];
-            let places = HeardPlaces { joints: vec![Some(at(0.5)), None], measured };
+            let places = HeardPlaces { joints: vec![Some(of_age(0.0)(at(0.5))), None], measured };
             clearances(&cell, region, &places, 0.0).unwrap()[0]
         };
         assert_eq!(clearance(None).distance_m, None);
@@ -300,5 +310,9 @@ follow = { encoder = "belt" }
         let expected = 0.5 * (UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s) + braking_m;
         assert!((moving(vec![0.5]) - expected).abs() < 1e-9 && (moving(vec![-0.5]) - expected).abs() < 1e-9);
         assert_eq!((moving(vec![0.0]), moving(Vec::new())), (0.0, 0.0));
+        // What is 0.1 s old may have been left at full speed.
+        let places = HeardPlaces { joints: vec![Some(of_age(0.1)(at(0.5))), None], measured: Vec::new() };
+        let old = clearances(&cell, &cell.regions[0], &places, 0.0).unwrap()[0].stopping_m;
+        assert!((old - 0.1 * cell.robots[0].limits[0].velocity).abs() < 1e-9, "{old}");
     }
 }

@@ -20,6 +20,14 @@ const TOO_OLD: Micros = Micros(500_000);
 /// Joint values apart by more than this from a time say nothing about where the robot was then.
 const TOO_FAR: Micros = Micros(100_000);
 
+/// Joint values that were heard.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct HeardJoints {
+    pub(crate) state: JointState,
+    /// Time since the joints were read, s.
+    pub(crate) age_s: f64,
+}
+
 /// What a robot has said.
 #[derive(Clone)]
 struct RobotJoints {
@@ -79,12 +87,12 @@ impl JointsHeard {
         Ok(Self { heard, clock, _subscriptions: subscriptions })
     }
 
-    /// Joint values per robot; `None` if the robot is not heard.
-    pub(crate) fn states(&self) -> Vec<Option<JointState>> {
+    /// Joint values per robot, with their age; `None` if the robot is not heard.
+    pub(crate) fn states(&self) -> Vec<Option<HeardJoints>> {
         let now = self.clock.micros();
         let fresh = |RobotJoints { heard, .. }: &mut RobotJoints| {
-            let age = heard.stamp.map(|stamp| heard.now(now) - stamp);
-            age.filter(|age| *age <= TOO_OLD).map(|_| heard.state.clone())
+            let age = heard.stamp.map(|stamp| heard.now(now) - stamp).filter(|age| *age <= TOO_OLD)?;
+            Some(HeardJoints { state: heard.state.clone(), age_s: age.0 as f64 * 1e-6 })
         };
         locked(&self.heard).iter_mut().map(fresh).collect()
     }

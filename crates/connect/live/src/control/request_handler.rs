@@ -164,10 +164,12 @@ impl RequestHandler {
         };
         let states = joints.states();
         // They tell which tools the attached volumes belong to. Without setups no monitor runs.
-        let has_attached = states.iter().flatten().any(|state| !state.attached.is_empty());
+        let has_attached = states.iter().flatten().any(|heard| !heard.state.attached.is_empty());
         let setups = if has_attached { configure::setups(&cell).unwrap_or_default() } else { Vec::new() };
         let robots = cell.robots.iter().zip(&states).enumerate();
-        let robots = robots.map(|(i, (r, state))| RobotOverview::new(r, setups.get(i), state.as_ref())).collect();
+        let robots = robots
+            .map(|(i, (r, state))| RobotOverview::new(r, setups.get(i), state.as_ref().map(|heard| &heard.state)))
+            .collect();
         Overview {
             cell: cell.name.clone(),
             checksum: cell.approval.checksum.clone(),

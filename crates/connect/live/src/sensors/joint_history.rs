@@ -37,7 +37,7 @@ impl JointHistory {
     pub fn update(&mut self, cell: &Cell) -> Result<(), RobotId> {
         for (i, heard) in self.joints.states().into_iter().enumerate() {
             let (state, robot) = (&mut self.states[i], &cell.robots[i]);
-            let Some(heard) = heard.filter(|heard| heard.q.len() == state.q.len()) else {
+            let Some(heard) = heard.map(|heard| heard.state).filter(|heard| heard.q.len() == state.q.len()) else {
                 return Err(RobotId(i));
             };
             state.q.copy_from_slice(&heard.q);

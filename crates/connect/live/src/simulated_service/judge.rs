@@ -147,7 +147,8 @@ impl Judge {
         }
     }
 
-    /// A carriage must not come to the region on the last one, or on the belt, by its own motion.
+    /// A carriage must not come to the region on the last one, or on the belt, by its own motion: a region that comes
+    /// faster than the carriage, which brakes or cannot know, has come to it.
     fn carried(&mut self, places: &[f64], velocities: &[f64]) {
         let last = places.len() - 1;
         let z = match self.follows {
@@ -158,7 +159,9 @@ impl Judge {
         let distance = |q: f64, z: f64| APART_M.hypot(z - q) - FOLLOWING_M - CARRIAGE_M;
         let (q, v) = (places[last - 1], velocities[last - 1]);
         let has_come = distance(q, z) < -INSIDE_M && distance(self.before[last - 1], self.before_carried) >= -INSIDE_M;
-        if has_come && v * (z - q) > 0.0 && v.abs() > REST_M_S {
+        let towards = (z - q).signum();
+        let (own, of_region) = (v * towards, 1e3 * (self.before_carried - z) * towards);
+        if has_come && own > REST_M_S && own > of_region {
             self.wrong(&format!(
                 "r{} enters the region that moves, at {q:.3} m with {v:.3} m/s, the region at {z:.3} m",
                 last - 1

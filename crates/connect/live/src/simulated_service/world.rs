@@ -164,6 +164,8 @@ impl World {
 
     /// Ends all processes of a host.
     pub(super) fn end(&self, host: usize) {
+        // A switch may have been made since the last look.
+        self.look_at_the_table();
         let (ended, others) = self.processes.take().into_iter().partition(|process| process.host == host);
         *self.processes.borrow_mut() = others;
         self.end_these(ended);

@@ -233,6 +233,10 @@ impl Arbiter {
                 _ => {}
             }
             match report.occupancy {
+                // It is not inside yet: if nobody holds the slot, nobody else gets it, and this robot only when all others are
+                // known to be outside.
+                Occupancy::Committed if self.slots[slot.0].holder.is_none() => self.keep_for(slot, robot),
+                Occupancy::Committed if self.slots[slot.0].is_held_by(robot) => {}
                 Occupancy::Committed | Occupancy::Inside => self.found_inside(slot, robot, outputs),
                 Occupancy::Outside | Occupancy::Warning => self.slots[slot.0].intruders.retain(|r| *r != robot),
                 Occupancy::Unknown => {}
@@ -269,6 +273,18 @@ impl Arbiter {
         }
     }
 
+    /// Makes a robot hold the slot without the right to enter.
+    fn keep_for(&mut self, slot: SlotId, robot: RobotSlot) {
+        self.slots[slot.0].holder = Some(Holder { robot, token: None });
+    }
+
+    /// The robot that holds the slot without the right to enter, if it can no longer stop outside.
+    fn committed_without_token(&self, slot: SlotId) -> Option<RobotSlot> {
+        let holder = self.slots[slot.0].holder.filter(|holder| holder.token.is_none())?;
+        let is_committed = self.robots[holder.robot.0].occupancy(slot) == Occupancy::Committed;
+        is_committed.then_some(holder.robot)
+    }
+
     fn free(&mut self, slot: SlotId) {
         let slot = &mut self.slots[slot.0];
         (slot.holder, slot.release_requested) = (None, false);
@@ -283,16 +299,16 @@ impl Arbiter {
         record.intruders.retain(|other| *other != robot);
     }
 
-    /// Grants each free slot to its first waiting robot if all others are known to be outside. Returns these robots.
+    /// Grants each free slot to its first waiting robot, and each slot that is kept for a committed robot to that robot, if
+    /// all others are known to be outside. Returns these robots.
     fn grant_free_slots(&mut self, now: Micros, outputs: &mut Outputs) -> Vec<RobotSlot> {
         let mut granted = Vec::new();
         for slot in (0..self.slots.len()).map(SlotId) {
-            if self.slots[slot.0].holder.is_some() || self.slots[slot.0].queue.is_empty() {
-                continue;
-            }
-            let Some(robot) = self.first_waiting(slot).filter(|robot| self.may_grant(slot, *robot, now)) else {
-                continue;
+            let next = match self.slots[slot.0].holder {
+                Some(_) => self.committed_without_token(slot),
+                None => self.first_waiting(slot),
             };
+            let Some(robot) = next.filter(|robot| self.may_grant(slot, *robot, now)) else { continue };
             self.hold(slot, robot);
             outputs.events.push(ArbiterEvent::Granted(slot, robot));
             granted.push(robot);

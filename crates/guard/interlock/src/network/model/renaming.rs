@@ -7,7 +7,8 @@ pub(crate) fn what_counts(occupancy: Occupancy) -> Occupancy {
     match occupancy {
         Occupancy::Unknown => Occupancy::Unknown,
         Occupancy::Outside | Occupancy::Warning => Occupancy::Outside,
-        Occupancy::Committed | Occupancy::Inside => Occupancy::Committed,
+        // Robots of the model are never committed without being inside.
+        Occupancy::Committed | Occupancy::Inside => Occupancy::Inside,
     }
 }
 
