@@ -5,8 +5,8 @@ use std::sync::Arc;
 use elbowroom_formats::Diagnostic;
 use elbowroom_kinematics::inverse::{IkOptions, IkSolver};
 use elbowroom_kinematics::{ChainState, LinkId};
-use elbowroom_proximity::TriMesh;
 use elbowroom_proximity::contact::triangle_surface;
+use elbowroom_proximity::{Shape, TriMesh};
 use elbowroom_robot::{Collider, ObjectId};
 use elbowroom_scene::{Scene, SceneState, Selection};
 use elbowroom_shared_control::force::{
@@ -162,7 +162,7 @@ impl CellOperator {
             if is_replaced || cell.moving_objects.iter().any(|m| m.object == id) {
                 continue;
             }
-            let surface = triangle_surface(&object.shape, CHORD_M);
+            let surface = surface_around(&object.shape);
             let protected = surface.map(|mesh| ProtectedSurface::new(mesh, object.in_world));
             match protected {
                 Some(Ok(surface)) => add(surface, SurfaceOwner::Object(id)),
@@ -191,12 +191,46 @@ impl FixtureTool {
     }
 }
 
+/// Triangles around a shape. Triangles between points on a round surface would be inside it, and the tool nearer to the
+/// true surface than half of the gap: such a shape is made larger by the depth of its deepest triangle.
+fn surface_around(shape: &Shape) -> Option<Arc<TriMesh>> {
+    let mesh = triangle_surface(shape, CHORD_M)?;
+    let mut around = shape.clone();
+    let radius = match &mut around {
+        Shape::Sphere(sphere) => &mut sphere.radius,
+        Shape::Capsule(capsule) => &mut capsule.radius,
+        Shape::Cylinder(cylinder) => &mut cylinder.radius,
+        Shape::Cuboid(_) | Shape::HalfSpace(_) | Shape::Hull(_) | Shape::Mesh(_) => return Some(mesh),
+    };
+    // The larger surface has deeper triangles, and the middle of a triangle may not be its deepest point.
+    *radius += 1.02 * deepest_m(shape, &mesh);
+    triangle_surface(&around, CHORD_M)
+}
+
+/// How deep edges and middles of triangles are under the round surface of a shape, m; the ends of a cylinder are flat.
+fn deepest_m(shape: &Shape, mesh: &TriMesh) -> f64 {
+    let depth = |p: Vec3| match shape {
+        Shape::Sphere(sphere) => sphere.radius - p.length(),
+        Shape::Capsule(capsule) => capsule.radius - p.distance(capsule.axis_point(p)),
+        Shape::Cylinder(cylinder) => cylinder.radius - p.x.hypot(p.y),
+        _ => 0.0,
+    };
+    let of_triangle = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| mesh.vertices()[corner as usize]);
+        if matches!(shape, Shape::Cylinder(_)) && a.z == b.z && b.z == c.z {
+            return 0.0;
+        }
+        [a + b, b + c, c + a].map(|sum| sum * 0.5).into_iter().chain([(a + b + c) / 3.0]).map(depth).fold(0.0, f64::max)
+    };
+    mesh.triangles().iter().map(of_triangle).fold(0.0, f64::max)
+}
+
 /// The surface of parts of a tool's link, in the frame of its point.
 fn surface_of(parts: &[&Collider], tool: FixtureTool, cell: &Cell) -> Option<Arc<TriMesh>> {
     let (_, tcp_in_link) = tool.solid(cell)?;
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for part in parts {
-        let mesh = triangle_surface(&part.shape, CHORD_M)?;
+        let mesh = surface_around(&part.shape)?;
         let (first, in_tcp) = (vertices.len() as u32, tcp_in_link.inverse() * part.in_link);
         vertices.extend(mesh.vertices().iter().map(|p| in_tcp.transform_point(*p)));
         triangles.extend(mesh.triangles().iter().map(|corners| corners.map(|corner| corner + first)));
@@ -231,5 +265,29 @@ fn in_words(e: NavigatorError, cell: &Cell) -> String {
             length(least_gap_m)
         ),
         other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_proximity::Sphere;
+
+    use super::*;
+
+    /// With a gap of 0.2 mm, triangles inside a sphere let the tool come nearer to it than half of that.
+    #[test]
+    fn triangles_are_around_a_round_shape() {
+        for radius in [0.003, 0.26, 2.0] {
+            let mesh = surface_around(&Shape::Sphere(Sphere { radius })).unwrap();
+            for corners in mesh.triangles() {
+                let [a, b, c] = corners.map(|corner| mesh.vertices()[corner as usize]);
+                let normal = (b - a).cross(c - a).try_normalize().unwrap();
+                let from_centre = normal.dot(a).abs();
+                assert!(
+                    from_centre >= radius && a.length() < 1.0002 * radius + 1.2 * CHORD_M,
+                    "{radius}: {from_centre}"
+                );
+            }
+        }
     }
 }
