@@ -203,7 +203,7 @@ fn surface_around(shape: &Shape) -> Option<Arc<TriMesh>> {
         Shape::Cuboid(_) | Shape::HalfSpace(_) | Shape::Hull(_) | Shape::Mesh(_) => return Some(mesh),
     };
     // The larger surface has deeper triangles, and the middle of a triangle may not be its deepest point.
-    *radius += 1.02 * deepest_m(shape, &mesh);
+    *radius += 1.1 * deepest_m(shape, &mesh);
     triangle_surface(&around, CHORD_M)
 }
 

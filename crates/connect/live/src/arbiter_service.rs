@@ -1,7 +1,8 @@
 //! Arbiter of a cell's exchange regions, on the network.
 
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
-use std::sync::{Arc, Mutex};
+use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+use std::sync::mpsc::{self, RecvTimeoutError, SyncSender};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
 use elbowroom_cell::{Cell, configure};
@@ -43,6 +44,9 @@ pub struct NotCleared {
 /// A running arbiter. It ends when it is dropped.
 pub struct ArbiterService {
     core: Arc<Mutex<ArbiterCore>>,
+    /// Number of messages per robot that were not processed yet.
+    waiting: Arc<[AtomicUsize]>,
+    on_event: Option<EventHandler>,
     subscriptions: Vec<Subscription>,
     inbox: Option<SyncSender<Incoming>>,
     worker: Option<Worker>,
@@ -64,14 +68,18 @@ impl ArbiterService {
     ) -> Result<Option<Self>, NetworkError> {
         let Some(settings) = settings(cell) else { return Ok(None) };
         let keys = Keys::new(&cell.name);
-        let (inbox, waiting) = mpsc::sync_channel::<Incoming>(WAITING);
+        let (inbox, queue) = mpsc::sync_channel::<Incoming>(WAITING);
+        let waiting: Arc<[AtomicUsize]> = cell.robots.iter().map(|_| AtomicUsize::new(0)).collect();
         let (mut subscriptions, mut grants) = (Vec::new(), Vec::new());
         for (slot, robot) in cell.robots.iter().enumerate() {
-            let (inbox, slot) = (inbox.clone(), RobotSlot(slot));
+            let (inbox, slot, waiting) = (inbox.clone(), RobotSlot(slot), waiting.clone());
             let handler = Box::new(move |bytes: &[u8]| {
                 if bytes.len() <= wire::MAX_BYTES {
+                    waiting[slot.0].fetch_add(1, SeqCst);
                     // A full queue drops the message; the guard repeats it.
-                    let _ = inbox.try_send(Incoming { robot: slot, bytes: bytes.to_vec() });
+                    if inbox.try_send(Incoming { robot: slot, bytes: bytes.to_vec() }).is_err() {
+                        waiting[slot.0].fetch_sub(1, SeqCst);
+                    }
                 }
             });
             subscriptions.push(network.subscribe(&keys.interlock_state(&robot.name), handler)?);
@@ -89,15 +97,27 @@ impl ArbiterService {
             status: network.publisher(&keys.interlocks(), Urgency::Display)?,
             published: None,
             clock,
-            on_event,
+            lines: Vec::new(),
         };
         // The first question starts the arbiter's silence timers: robots that never send a message are silent from now on.
         let _ = core.arbiter.may_clear(RobotSlot(0), clock.micros());
         let core = Arc::new(Mutex::new(core));
-        let running = core.clone();
-        let step = move |longest| step(&running, &waiting, longest);
+        let (running, processed, told) = (core.clone(), waiting.clone(), on_event.clone());
+        let step = move |longest| match queue.recv_timeout(longest) {
+            Ok(incoming) => {
+                step(&running, Some(&incoming), told.as_ref());
+                processed[incoming.robot.0].fetch_sub(1, SeqCst);
+                true
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                step(&running, None, told.as_ref());
+                true
+            }
+            Err(RecvTimeoutError::Disconnected) => false,
+        };
         let worker = Some(Worker::start("arbiter", clock, PERIOD, Box::new(step)));
-        Ok(Some(Self { core, subscriptions, inbox: Some(inbox), worker, _network: network.clone() }))
+        let (inbox, network) = (Some(inbox), network.clone());
+        Ok(Some(Self { core, waiting, on_event, subscriptions, inbox, worker, _network: network }))
     }
 
     /// Returns the holder and the queue of each exchange region.
@@ -110,6 +130,7 @@ impl ArbiterService {
     /// # Errors
     /// [`NotCleared`].
     pub fn may_clear(&self, robot: RobotId) -> Result<(), NotCleared> {
+        self.nothing_waits(robot)?;
         let mut core = locked(&self.core);
         let now = core.clock.micros();
         core.arbiter.may_clear(RobotSlot(robot.0), now).map_err(|missing| NotCleared { missing })
@@ -120,7 +141,17 @@ impl ArbiterService {
     /// # Errors
     /// [`NotCleared`]; then nothing has changed.
     pub fn clear(&self, robot: RobotId) -> Result<(), NotCleared> {
-        locked(&self.core).clear(RobotSlot(robot.0)).map_err(|missing| NotCleared { missing })
+        self.nothing_waits(robot)?;
+        let mut core = locked(&self.core);
+        core.clear(RobotSlot(robot.0)).map_err(|missing| NotCleared { missing })?;
+        tell(core, self.on_event.as_ref());
+        Ok(())
+    }
+
+    /// A robot whose messages were not processed yet has spoken: this process may have paused.
+    fn nothing_waits(&self, robot: RobotId) -> Result<(), NotCleared> {
+        let has_spoken = self.waiting[robot.0].load(SeqCst) > 0;
+        if has_spoken { Err(NotCleared { missing: PERIOD_US }) } else { Ok(()) }
     }
 }
 
@@ -177,20 +208,27 @@ struct ArbiterCore {
     /// Time of the last publication of the holders.
     published: Option<Micros>,
     clock: Clock,
-    on_event: Option<EventHandler>,
+    /// What is to be reported.
+    lines: Vec<String>,
 }
 
-/// Waits for a message, and handles it; publishes the holders after a change, and from time to time.
-fn step(core: &Mutex<ArbiterCore>, waiting: &Receiver<Incoming>, longest: Duration) -> bool {
-    let incoming = match waiting.recv_timeout(longest) {
-        Ok(incoming) => Some(incoming),
-        Err(RecvTimeoutError::Timeout) => None,
-        Err(RecvTimeoutError::Disconnected) => return false,
-    };
+/// Handles a message, if there is one; publishes the holders after a change, and from time to time.
+fn step(core: &Mutex<ArbiterCore>, incoming: Option<&Incoming>, on_event: Option<&EventHandler>) {
     let mut core = locked(core);
-    let has_changed = incoming.is_some_and(|Incoming { robot, bytes }| core.take(robot, &bytes));
+    let has_changed = incoming.is_some_and(|Incoming { robot, bytes }| core.take(*robot, bytes));
     core.publish_if_due(has_changed);
-    true
+    tell(core, on_event);
+}
+
+/// Reports the lines of the core when it is not locked any more: the handler may ask the arbiter.
+fn tell(mut core: MutexGuard<'_, ArbiterCore>, on_event: Option<&EventHandler>) {
+    let lines = std::mem::take(&mut core.lines);
+    drop(core);
+    if let Some(on_event) = on_event {
+        for line in &lines {
+            on_event(line);
+        }
+    }
 }
 
 impl ArbiterCore {
@@ -199,9 +237,7 @@ impl ArbiterCore {
         if has_changed || self.published.is_none_or(|at| now - at >= PERIOD_US) {
             self.published = Some(now);
             self.publish();
-            for line in self.silence.look(now) {
-                self.say(&line);
-            }
+            self.lines.extend(self.silence.look(now));
         }
     }
 
@@ -213,9 +249,7 @@ impl ArbiterCore {
             return false;
         }
         let now = self.clock.micros();
-        if let Some(line) = self.silence.heard(robot, now) {
-            self.say(&line);
-        }
+        self.lines.extend(self.silence.heard(robot, now));
         let outputs = self.arbiter.receive(&state, now);
         self.send(outputs)
     }
@@ -236,16 +270,9 @@ impl ArbiterCore {
                 grants.publish(&bytes);
             }
         }
-        for event in &outputs.events {
-            self.say(&self.words(event));
-        }
+        let lines: Vec<String> = outputs.events.iter().map(|event| self.words(event)).collect();
+        self.lines.extend(lines);
         !outputs.events.is_empty()
-    }
-
-    fn say(&self, line: &str) {
-        if let Some(on_event) = &self.on_event {
-            on_event(line);
-        }
     }
 
     fn publish(&mut self) {

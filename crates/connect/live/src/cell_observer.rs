@@ -23,6 +23,8 @@ use crate::ros2::CellFeed;
 
 /// Interval between statuses of the cell. The page shows at most one picture per status, and at least 30 per second.
 const PERIOD: Duration = Duration::from_millis(30);
+/// Shortest rest between two statuses.
+const LEAST_REST: Duration = Duration::from_millis(3);
 /// A robot whose status is older than this is shown as silent.
 const SILENT: Micros = Micros(500_000);
 /// Most events kept between two statuses of the cell.
@@ -135,9 +137,10 @@ fn subscribe(
     Ok(subscriptions)
 }
 
-/// When the next status is due: the interval includes the time that the last one took, and missed ones are omitted.
+/// When the next status is due: the interval includes the time that the last one took, and missed ones are omitted. The
+/// thread always rests a little.
 fn next_due(due: Instant, now: Instant) -> Instant {
-    (due + PERIOD).max(now)
+    (due + PERIOD).max(now + LEAST_REST)
 }
 
 /// Adds the time since arrival to the ages in a status.
@@ -206,7 +209,7 @@ mod tests {
         let begin = Instant::now();
         let after = |ms: u64| begin + Duration::from_millis(ms);
         assert_eq!(next_due(begin, after(3)), after(30));
-        assert_eq!(next_due(after(30), after(59)), after(60));
-        assert_eq!(next_due(after(60), after(200)), after(200));
+        assert_eq!(next_due(after(30), after(55)), after(60));
+        assert_eq!(next_due(after(60), after(200)), after(203));
     }
 }

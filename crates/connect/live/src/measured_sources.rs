@@ -13,8 +13,8 @@ use crate::locked::locked;
 use crate::network::{Network, NetworkError, Subscription};
 use crate::node::{Heard, MeasuredFrame};
 
-/// Age above which a measurement says nothing about where a source is.
-const TOO_OLD: Micros = Micros(500_000);
+/// Age up to which a region on a source is where the measurement says.
+const FRESH: Micros = Micros(50_000);
 
 /// Key of the messages of a measured source.
 pub(crate) fn key_of(keys: &Keys, cell: &Cell, source: MeasuredSource) -> String {
@@ -54,8 +54,14 @@ impl MeasuredSources {
     }
 
     /// State per measured source; `None` if it is not heard.
+    #[cfg(test)]
     pub(crate) fn states(&self) -> Vec<Option<SourceState>> {
-        self.states_within(TOO_OLD)
+        self.states_within(Micros(500_000))
+    }
+
+    /// State per measured source; `None` if it was not heard lately.
+    pub(crate) fn fresh_states(&self) -> Vec<Option<SourceState>> {
+        self.states_within(FRESH)
     }
 
     /// The last state per measured source, however old it is; `None` if it was never heard.

@@ -54,7 +54,7 @@ pub struct ServiceStatus {
     /// configuration.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub configuration: String,
-    /// Start of the keeper and revision of the table of regions that the tick has used; zeros before the first table.
+    /// Start of the keeper and revision of the table of regions that the node has received last; zeros before the first.
     #[serde(default)]
     pub table: (u64, u64),
     /// Health of the service.

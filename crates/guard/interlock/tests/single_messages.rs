@@ -145,5 +145,7 @@ fn a_committed_robot_without_a_grant_does_not_enter_before_all_others_are_known(
         committed(&mut arbiter, 0, 500);
         assert_eq!(arbiter.holder(SLOT), Some(RobotSlot(0)), "nobody else gets the slot");
         assert_eq!(committed(&mut arbiter, 500, 1000), may_enter, "{other:?}");
+        // One of them may come to rest inside beside the other: a person leads one of them out.
+        assert_eq!(guards.map(|guard| guard.must_halt(SLOT)), [!may_enter; 2], "{other:?}");
     }
 }

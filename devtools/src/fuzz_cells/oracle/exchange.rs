@@ -177,8 +177,12 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
     // Robots that act as one stand for a reason that is reported with their work-piece.
     let stands_with_others = |robot: usize| {
         let name = &motion.recording.robots[robot].name;
-        let stands = |v: &VirtualRobotTrack| v.robots.contains(name) && v.samples.last().is_some_and(|s| s.is_stopped);
-        motion.recording.virtual_robots.iter().any(|v| stands(v) && !v.stops.is_empty())
+        // The last stop lasts to the end of the run.
+        let stands = |v: &VirtualRobotTrack| {
+            let end_s = v.samples.last().filter(|sample| sample.is_stopped).map(|sample| sample.t_s);
+            v.stops.last().zip(end_s).is_some_and(|(stop, end_s)| stop.to_s >= end_s)
+        };
+        motion.recording.virtual_robots.iter().any(|v| v.robots.contains(name) && stands(v))
     };
     // While a robot moves, for example in a run that was cut off, robots at rest may still be granted a region.
     if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !at_rest(r)) {

@@ -34,6 +34,9 @@ pub(crate) struct Clearance {
 /// Time until a change is in force at the nodes, s: they receive it at once, or with the next message if one is lost.
 const UNTIL_IT_COUNTS_S: f64 = 0.2;
 
+/// Age of joint values, s, up to which a robot moves as they say, and a region that follows it is where they say.
+const FRESH_S: f64 = 0.05;
+
 /// Computes the distance from a region of each robot that it guards against, with the parts that the robot carries.
 ///
 /// The errors and the missing distances are those of [`ClearanceQuery`].
@@ -90,7 +93,7 @@ impl ClearanceQuery {
         let of_robot = |own: &mut RobotMonitor| {
             let robot = own.robot;
             let state = states[robot.0].as_ref().filter(|_| chains[robot.0].is_some());
-            let sources = sources(alone, &setups[robot.0].sources, &chains, measured, t_s);
+            let sources = sources(alone, &setups[robot.0].sources, (&chains, states), measured, t_s);
             let known = state.zip(sources).and_then(|(heard, sources)| own.distance(alone, heard, &sources));
             let (distance_m, stopping_m) =
                 known.map_or((None, 0.0), |(distance_m, stopping_m)| (Some(distance_m), stopping_m));
@@ -124,14 +127,15 @@ fn with_only(cell: &Cell, region: &CellRegion) -> Cell {
 }
 
 /// Joint values at which the robot comes to rest, if it continues at its velocities until the region is in force and
-/// then brakes. Since the joints were read it may have accelerated to full speed. A robot without velocities counts as at
-/// rest then.
+/// then brakes. A robot whose joints were read more than [`FRESH_S`] ago may go at full speed by now. A robot without
+/// velocities counts as at rest when they were read.
 fn at_standstill(cell: &Cell, robot: RobotId, HeardJoints { state, age_s }: &HeardJoints) -> Vec<f64> {
     let going_on_s = UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s;
     let limits = &cell.robots[robot.0].limits;
     let moved = |((q, limit), qd): ((&f64, &elbowroom_kinematics::JointLimits), &f64)| {
-        let since_m = limit.velocity.max(qd.abs()) * age_s;
-        q + since_m.copysign(*qd) + qd * (going_on_s + qd.abs() / (2.0 * limit.stop))
+        let full_speed = limit.velocity.max(qd.abs());
+        let now = if *age_s > FRESH_S { full_speed } else { qd.abs() };
+        q + (full_speed * age_s + now * (going_on_s + now / (2.0 * limit.stop))).copysign(*qd)
     };
     let has_velocities = state.qd.len() == state.q.len() && state.qd.iter().all(|v| v.is_finite());
     let at_rest = vec![0.0; state.q.len()];
@@ -151,18 +155,21 @@ fn placed(robot: &elbowroom_cell::CellRobot, state: Option<&JointState>) -> Opti
     Some(placed)
 }
 
-/// States of the sources that the region follows; `None` if one of them is a robot or a measured source that is not heard.
+/// States of the sources that the region follows; `None` if one of them is a robot or a measured source that was not heard
+/// lately.
 fn sources(
     cell: &Cell,
     follows: &[Follow],
-    chains: &[Option<ChainState>],
+    (chains, heard): (&[Option<ChainState>], &[Option<HeardJoints>]),
     measured: &[Option<SourceState>],
     t_s: f64,
 ) -> Option<Vec<SourceState>> {
     let states: Vec<SourceState> = measured.iter().map(|state| state.unwrap_or(LOST)).collect();
     let frames = Frames::with_measured(cell, &states);
     let is_known = |f: &Follow| match (f, frames.measured_source(f)) {
-        (Follow::Robot { robot, .. }, _) => chains[robot.0].is_some(),
+        (Follow::Robot { robot, .. }, _) => {
+            chains[robot.0].is_some() && heard[robot.0].as_ref().is_some_and(|heard| heard.age_s <= FRESH_S)
+        }
         (_, source) => source.is_none_or(|index| measured[index].is_some()),
     };
     if !follows.iter().all(is_known) {
@@ -313,6 +320,9 @@ follow = { encoder = "belt" }
         // What is 0.1 s old may have been left at full speed.
         let places = HeardPlaces { joints: vec![Some(of_age(0.1)(at(0.5))), None], measured: Vec::new() };
         let old = clearances(&cell, &cell.regions[0], &places, 0.0).unwrap()[0].stopping_m;
-        assert!((old - 0.1 * cell.robots[0].limits[0].velocity).abs() < 1e-9, "{old}");
+        let limit = cell.robots[0].limits[0];
+        let on_s = 0.1 + UNTIL_IT_COUNTS_S + cell.monitoring.reaction_s;
+        let expected = limit.velocity * (on_s + limit.velocity / (2.0 * limit.stop));
+        assert!((old - expected).abs() < 1e-9, "{old}");
     }
 }

@@ -71,7 +71,8 @@ impl NodesHeard {
             let now = self.clock.micros();
             let heard = locked(&self.heard).clone();
             let is_missing = |h: &Heard| {
-                let has_it = h.table >= table && h.configuration == configuration;
+                let has_table = h.table.0 == table.0 && h.table.1 >= table.1;
+                let has_it = has_table && h.configuration == configuration;
                 !has_it && now - h.at <= SILENT
             };
             let missing: Vec<usize> = (0..heard.len()).filter(|r| is_missing(&heard[*r])).collect();

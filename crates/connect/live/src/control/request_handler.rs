@@ -42,7 +42,7 @@ pub(crate) struct ControlParts {
 impl ControlParts {
     /// Where everything is.
     pub(super) fn places(&self) -> HeardPlaces {
-        HeardPlaces { joints: self.joints.states(), measured: self.measured.states() }
+        HeardPlaces { joints: self.joints.states(), measured: self.measured.fresh_states() }
     }
 }
 

@@ -159,18 +159,26 @@ impl Node {
             cell,
             robot,
         };
-        let mut workers = Vec::new();
+        let networks = [network, interlocks];
+        // Its drop closes the boxes, also if a thread cannot be started.
+        let mut node = Self {
+            is_guard,
+            inbox,
+            outbox: outbox.clone(),
+            workers: Vec::new(),
+            _subscriptions: subscriptions,
+            _networks: networks,
+        };
         if let Some(mut builder) = builder {
             let build = Box::new(move |longest| builder.wait_and_build(clock, longest));
-            workers.push(Worker::start(&format!("build {name}"), clock, AGAIN_AFTER, build));
+            node.workers.push(Worker::start(&format!("build {name}"), clock, AGAIN_AFTER, build));
         }
         let stale = tick.stale();
         let tick = Box::new(move |longest| tick.wait_and_tick(clock, longest));
-        workers.push(Worker::start(&format!("tick {name}"), clock, stale, tick));
-        let sending = outbox.clone();
-        let send = Box::new(move |longest| sender.wait_and_send(&sending, longest));
-        workers.push(Worker::start(&format!("send {name}"), clock, NOTHING_TO_SEND, send));
-        Ok(Self { is_guard, inbox, outbox, workers, _subscriptions: subscriptions, _networks: [network, interlocks] })
+        node.workers.push(Worker::start(&format!("tick {name}"), clock, stale, tick));
+        let send = Box::new(move |longest| sender.wait_and_send(&outbox, longest));
+        node.workers.push(Worker::start(&format!("send {name}"), clock, NOTHING_TO_SEND, send));
+        Ok(node)
     }
 }
 

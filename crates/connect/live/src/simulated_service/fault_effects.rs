@@ -82,7 +82,10 @@ impl World {
 
     /// A file that must not be replaced stands for a disk that takes nothing more.
     fn fill_disk(&self, of_log: bool) {
-        self.note("full disks", &[], 0);
+        if self.file(of_log).is_file() {
+            self.note("full disks", &[], 0);
+            self.plan().has_lost_journal |= !of_log;
+        }
         protect(&self.file(of_log), true);
         self.later(900_000, Fault::FreeDisk { of_log });
     }

@@ -65,6 +65,8 @@ pub(super) struct FaultPlan {
     /// Per host, true time until which something disturbs it.
     disturbed_until_us: BTreeMap<Host, u64>,
     pub(super) counts: BTreeMap<&'static str, u64>,
+    /// Whether a journal could not be written.
+    pub(super) has_lost_journal: bool,
 }
 
 impl FaultPlan {
@@ -82,7 +84,12 @@ impl FaultPlan {
             faults: faults.into(),
             disturbed_until_us: BTreeMap::new(),
             counts: BTreeMap::new(),
+            has_lost_journal: false,
         }
+    }
+
+    pub(super) fn has_faults(&self) -> bool {
+        self.has_faults
     }
 
     /// A fault for the moment of a request, in some cases.

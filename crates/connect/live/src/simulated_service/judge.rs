@@ -59,7 +59,7 @@ pub(super) struct Judge {
     before_carried: f64,
     /// Regions that were added or moved, with their places.
     pub(super) zones: Vec<Zone>,
-    /// The region that people ask to be moved, and whether a carriage has entered its place since.
+    /// The region that people ask to be moved or removed, and whether a carriage has entered its place since.
     moving: Option<(String, bool)>,
     /// Their places before the last move.
     former: BTreeMap<String, (f64, f64)>,
@@ -170,21 +170,26 @@ impl Judge {
         self.before_carried = z;
     }
 
-    /// People ask for a region to be moved: if that is done, the place where it was may be free before they are told.
-    pub(super) fn begin_move(&mut self, name: &str) {
+    /// People ask for a region to be moved or removed: if that is done, its place may be free before they are told.
+    pub(super) fn begin_change(&mut self, name: &str) {
         self.moving = Some((name.to_owned(), false));
     }
 
-    /// The request to move a region has ended.
-    pub(super) fn end_move(&mut self, is_refused: bool) {
+    /// The request has ended.
+    pub(super) fn end_change(&mut self, is_refused: bool) {
         if let Some((name, true)) = self.moving.take().filter(|_| is_refused) {
-            self.wrong(&format!("a carriage enters {name}, which was not moved"));
+            self.wrong(&format!("a carriage enters {name}, which stays where it is"));
         }
     }
 
     /// Where a region was before it was moved.
     pub(super) fn former(&self, name: &str) -> Option<(f64, f64)> {
         self.former.get(name).copied()
+    }
+
+    /// An answer says that the switched region is on, or off.
+    pub(super) fn switched(&mut self, is_on: bool) {
+        self.cart_on_since_us = is_on.then(|| self.cart_on_since_us.unwrap_or(true_us()));
     }
 
     /// A change of a region has been answered: it is in force from now on.

@@ -75,7 +75,10 @@ fn schedule(cells: &[Rc<SimulatedCell>], seed: u64) -> Outcome {
     while true_us() < LENGTH_US {
         let pause_us = 50_000 + world.random.borrow_mut().bits() % 900_000;
         world.advance(true_us() + pause_us);
-        world.ask();
+        // Without requests, waits are longer than their usual reasons.
+        if !seed.is_multiple_of(5) {
+            world.ask();
+        }
     }
     set_sleeper(None);
     world.end_all();
@@ -125,8 +128,21 @@ fn nobody_enters_what_an_answer_has_closed_and_no_region_is_shared() {
     println!("schedules {seeds:?} of {} s: {findings:?}\n{counts:?}", LENGTH_US / 1_000_000);
     assert!(findings.wrong.is_empty(), "{} findings, the first: {}", findings.wrong.len(), findings.wrong[0]);
     if seeds.clone().count() >= 40 {
-        let happened =
-            ["add", "move", "remove", "switch", "requests refused", "killed", "paused", "cut", "late", "full disks"];
+        let happened = [
+            "add",
+            "move",
+            "remove",
+            "switch",
+            "requests refused",
+            "killed",
+            "paused",
+            "cut",
+            "late",
+            "full disks",
+            "second nodes",
+            "ticks replayed",
+            "looks at waits",
+        ];
         let missing: Vec<&str> = happened.into_iter().filter(|what| !counts.contains_key(what)).collect();
         assert!(
             missing.is_empty() && findings.passages > 40 && findings.arrivals > 40 && findings.held_ms > 0,

@@ -79,10 +79,10 @@ impl World {
         let place = Place { radius, ..place };
         let toml = format!("centre = [{}, 0, {}]", place.x, place.z);
         let request = Move { region: name.clone(), toml, note: None };
-        self.judge.borrow_mut().begin_move(&name);
+        self.judge.borrow_mut().begin_change(&name);
         let answer =
             self.send("move", |parts, at| parts.handler.move_region(&self.cell.tokens[PROGRAMMER], at, &request));
-        self.judge.borrow_mut().end_move(matches!(answer, Some(Err(_))));
+        self.judge.borrow_mut().end_change(matches!(answer, Some(Err(_))));
         match answer {
             Some(Ok(done)) => self.promise(&done, name, place),
             // The region is still where it was.
@@ -93,12 +93,12 @@ impl World {
 
     fn remove(&self, edited: &[String]) {
         let name = edited[self.random.borrow_mut().below(edited.len())].clone();
-        let before = self.judge.borrow().zones.iter().find(|zone| zone.name == name).cloned();
-        self.judge.borrow_mut().no_longer(&name);
-        let request = Remove { region: name, note: None };
+        let request = Remove { region: name.clone(), note: None };
+        self.judge.borrow_mut().begin_change(&name);
         let answer = self.send("remove", |parts, at| parts.handler.remove(&self.cell.tokens[PROGRAMMER], at, &request));
-        if let (Some(Err(_)), Some(zone)) = (answer, before) {
-            self.judge.borrow_mut().zones.push(zone);
+        self.judge.borrow_mut().end_change(matches!(answer, Some(Err(_))));
+        if !matches!(answer, Some(Err(_))) {
+            self.judge.borrow_mut().no_longer(&name);
         }
     }
 
@@ -114,7 +114,10 @@ impl World {
             return;
         }
         let request = Switch { region: "cart".into(), active, note: None };
-        self.send("switch", |parts, at| parts.handler.switch(&self.cell.tokens[PROGRAMMER], at, &request));
+        let answer = self.send("switch", |parts, at| parts.handler.switch(&self.cell.tokens[PROGRAMMER], at, &request));
+        if matches!(answer, Some(Ok(_))) {
+            self.judge.borrow_mut().switched(active);
+        }
     }
 
     /// Clears a robot whose node does not run, if it rests outside its exchange regions.
@@ -146,10 +149,12 @@ impl World {
             self.count("requests without an arbiter");
             return Some(Err(Refusal::new(503, "nobody listens")));
         };
-        self.waits.borrow_mut().changed_us = u64::MAX;
+        let changed_us = std::mem::replace(&mut self.waits.borrow_mut().changed_us, u64::MAX);
         let at = parts.handler.overview().revision;
         let answer = catch_unwind(AssertUnwindSafe(|| request(&parts, &at)));
-        self.waits.borrow_mut().changed_us = true_us();
+        // Nodes may have stopped while they had no regions; refused requests and switches stop none.
+        let has_changed = !matches!(answer, Ok(Err(_))) && what != "switch";
+        self.waits.borrow_mut().changed_us = if has_changed { true_us() } else { changed_us };
         match answer {
             Ok(answer) => {
                 self.count(if answer.is_ok() { what } else { "requests refused" });
@@ -173,6 +178,9 @@ impl World {
             done.not_heard.contains(&robot) || done.stopped.contains(&robot)
         };
         let named: Vec<usize> = (0..self.cell.rails).filter(is_named).collect();
+        if !named.is_empty() && !self.plan().has_faults() {
+            self.judge.borrow_mut().wrong(&format!("the answer about {name} names {named:?} without a fault"));
+        }
         let zone = Zone { name, x, z, radius, named, since_us: true_us() };
         self.judge.borrow_mut().in_force(zone, &self.places());
     }

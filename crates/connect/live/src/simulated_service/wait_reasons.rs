@@ -8,6 +8,8 @@ use super::world::World;
 
 /// Longest wait without a reason.
 const LONGEST_US: u64 = 1_500_000;
+/// Time after a change of regions in which it may still be the reason.
+const CHANGE_US: u64 = 300_000;
 /// Warning distance of the exchange regions, m.
 const WARNING_M: f64 = 0.3;
 /// Distance within which another region may be the reason, m.
@@ -23,6 +25,9 @@ impl World {
     pub(super) fn look_at_waits(&self) {
         for rail in 0..self.cell.rails {
             let waits = self.waits_without_reason(rail);
+            if waits {
+                self.count("looks at waits");
+            }
             let since = {
                 let since = &mut self.waits.borrow_mut().since_us[rail];
                 *since = waits.then(|| since.unwrap_or(true_us()));
@@ -38,7 +43,7 @@ impl World {
     fn waits_without_reason(&self, rail: usize) -> bool {
         let (places, velocities, targets) = (self.places(), self.velocities(), self.targets());
         let (q, target) = (places[rail], targets[rail]);
-        if velocities[rail] != 0.0 || true_us() < self.waits.borrow().changed_us.saturating_add(2 * LONGEST_US) {
+        if velocities[rail] != 0.0 || true_us() < self.waits.borrow().changed_us.saturating_add(CHANGE_US) {
             return false;
         }
         let direction = (target - q).signum();

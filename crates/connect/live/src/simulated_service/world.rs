@@ -117,9 +117,16 @@ impl World {
         self.start_arbiter();
         let Some(ArbiterParts { keeper, .. }) = self.arbiter() else { return };
         let present = keeper.present().cell;
+        let active = keeper.active();
+        let is_on = present.regions.iter().zip(active).any(|(r, on)| on && r.region.name == "cart");
+        let may_be_lost = self.plan().has_lost_journal;
         let mut judge = self.judge.borrow_mut();
-        if !has_journal {
+        if !has_journal && may_be_lost {
             judge.zones.clear();
+        } else if !has_journal && !judge.zones.is_empty() {
+            judge.wrong("there is no journal");
+        } else if judge.cart_on_since_us.is_some() && !is_on {
+            judge.wrong("the restart switches a region off");
         }
         let is_known = |name: &str| present.regions.iter().any(|r| r.region.name == name);
         let forgotten: Vec<String> =
@@ -260,8 +267,12 @@ impl World {
         }
     }
 
-    /// Whether the switched region is on, as the keeper has it; while no keeper runs nothing changes.
+    /// Whether the switched region is on, as the keeper has it, if programs switch it; while no keeper runs nothing
+    /// changes. What people switch is as they were told.
     fn look_at_the_table(&self) {
+        if !self.programs_switch && self.judge.borrow().cart_on_since_us.is_some() {
+            return;
+        }
         let Some(ArbiterParts { keeper, .. }) = self.arbiter() else { return };
         let (present, active) = (keeper.present().cell, keeper.active());
         let is_on = present.regions.iter().zip(active).any(|(r, on)| on && r.region.name == "cart");

@@ -275,7 +275,9 @@ impl Arbiter {
 
     /// Makes a robot hold the slot without the right to enter.
     fn keep_for(&mut self, slot: SlotId, robot: RobotSlot) {
-        self.slots[slot.0].holder = Some(Holder { robot, token: None });
+        let record = &mut self.slots[slot.0];
+        record.holder = Some(Holder { robot, token: None });
+        record.intruders.retain(|other| *other != robot);
     }
 
     /// The robot that holds the slot without the right to enter, if it can no longer stop outside.

@@ -18,8 +18,8 @@ pub(super) struct SlotRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Holder {
     pub(super) robot: RobotSlot,
-    /// The grant. `None` if the robot's guard has started again and has not reported where the robot is; then the slot
-    /// is neither confirmed nor granted to others.
+    /// The grant. `None` if the robot's guard has started again and has not reported where the robot is, or if the robot
+    /// is committed without a grant; then the slot is neither confirmed nor granted to others.
     pub(super) token: Option<Token>,
 }
 
