@@ -12,8 +12,7 @@ use crate::keys::Keys;
 use crate::locked::locked;
 use crate::network::{Network, NetworkError, Subscription};
 
-/// A node without a status for this long does not run, or no longer receives the table of regions and has stopped by
-/// now: the validity of the table, plus 0.5 s for messages on the way.
+/// A node without a status for this long is not waited for. It may run all the same, if its messages alone are lost.
 const SILENT: Micros = Micros(1_500_000);
 /// Longest wait for the nodes: a running node has built the regions by then, or stops when they are due.
 const LONGEST: Micros = Micros(4_000_000);
@@ -62,22 +61,21 @@ impl NodesHeard {
         Ok(Self { heard, clock, _subscriptions: subscriptions })
     }
 
-    /// Waits until all running nodes have this configuration (the first digits of its checksum, or empty for the cell
-    /// file's configuration) and have received this table, or a later one: a status that was sent before may be late, and
-    /// of an earlier time with the same regions. Returns the indices of robots whose nodes still run without it.
+    /// Waits until all nodes that are heard have this configuration (the first digits of its checksum, or empty for the
+    /// cell file's configuration) and have received this table, or a later one: a status that was sent before may be late,
+    /// and of an earlier time with the same regions. Returns the indices of robots whose nodes are not heard with it.
     pub(crate) fn wait_for(&self, configuration: &str, table: (u64, u64)) -> Vec<usize> {
         let since = self.clock.micros();
         loop {
             let now = self.clock.micros();
             let heard = locked(&self.heard).clone();
-            let is_missing = |h: &Heard| {
+            let has_it = |h: &Heard| {
                 let has_table = h.table.0 == table.0 && h.table.1 >= table.1;
-                let has_it = has_table && h.configuration == configuration;
-                !has_it && now - h.at <= SILENT
+                has_table && h.configuration == configuration
             };
-            let missing: Vec<usize> = (0..heard.len()).filter(|r| is_missing(&heard[*r])).collect();
-            if missing.is_empty() || now - since > LONGEST {
-                return missing;
+            let may_still_say = |h: &Heard| !has_it(h) && now - h.at <= SILENT;
+            if !heard.iter().any(may_still_say) || now - since > LONGEST {
+                return (0..heard.len()).filter(|robot| !has_it(&heard[*robot])).collect();
             }
             self.clock.sleep(POLL);
         }

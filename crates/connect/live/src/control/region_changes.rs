@@ -198,15 +198,18 @@ impl RequestHandler {
     }
 
     /// Switches all running nodes to these regions: first they prepare; then nodes that have not prepared stop. Returns
-    /// the robots of those nodes.
+    /// the robots of those nodes, and of nodes that are not heard although the controller of the robot is: they may continue
+    /// with the former regions until their last table is too old.
     fn go_to(&self, regions: &PresentRegions, new_are_on: bool) -> Vec<String> {
-        let ControlParts { keeper, nodes, versions, .. } = &self.parts;
+        let ControlParts { keeper, nodes, versions, joints, .. } = &self.parts;
         let is_base = Arc::ptr_eq(&regions.cell, versions.base());
         let number = if is_base { String::new() } else { configuration_digits(&regions.cell) };
         let table = keeper.set(regions, new_are_on, false);
         let missing = nodes.wait_for(&number, table);
         keeper.set(regions, new_are_on, true);
-        missing.into_iter().map(|robot| regions.cell.robots[robot].name.clone()).collect()
+        let heard = joints.states();
+        let moves = |robot: &usize| heard[*robot].is_some() && !regions.cell.robots[*robot].is_mechanism();
+        missing.into_iter().filter(moves).map(|robot| regions.cell.robots[robot].name.clone()).collect()
     }
 }
 

@@ -62,7 +62,8 @@ pub(crate) struct Done {
     pub(crate) revision: String,
     /// Robots of the region whose position is unknown.
     pub(crate) not_heard: Vec<String>,
-    /// Robots whose nodes run, but have not switched to the new regions: they stop.
+    /// Robots whose nodes have not confirmed the new regions: they stop, at the latest when their last table is too old, or
+    /// nobody guards them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) stopped: Vec<String>,
 }

@@ -32,10 +32,7 @@ pub(super) struct GuardedRobot {
     carriers: Carriers,
     sources: Vec<SourceState>,
     attached: AttachedVolumes,
-    /// Whether each region of the cell is on.
-    active: Vec<bool>,
-    /// Revision of the table of regions that was received last.
-    pub(super) table: (u64, u64),
+    pub(super) table: ReceivedTable,
     /// Whether the robot stops until it has received a table of regions.
     pub(super) awaits_regions: bool,
     /// Fault in the input.
@@ -46,6 +43,13 @@ pub(super) struct GuardedRobot {
     checksum: u64,
     pub(super) sample: StatusSample,
     recorder: Option<TickRecorder>,
+}
+
+/// The table of regions that was received last.
+pub(super) struct ReceivedTable {
+    pub(super) revision: (u64, u64),
+    /// Whether each region of the cell is on.
+    active: Vec<bool>,
 }
 
 /// What the robot's own controller has sent.
@@ -100,8 +104,7 @@ impl GuardedRobot {
             sources: Vec::with_capacity(setup.sources.len()),
             attached: AttachedVolumes::new(&setup.configuration),
             doubt: None,
-            active: RegionTable::initial(&cell).active,
-            table: (0, 0),
+            table: ReceivedTable { revision: (0, 0), active: RegionTable::initial(&cell).active },
             awaits_regions: false,
             version: Arc::new(NodeVersion { number: String::new(), configuration: setup.configuration.clone() }),
             answers: 0,
@@ -142,12 +145,12 @@ impl GuardedRobot {
             self.replace(&mut next, inbox);
             inbox.left_over = Some(next);
         }
-        self.table = inbox.regions.revision;
+        self.table.revision = inbox.regions.revision;
         let is_known = inbox.regions_heard.is_some_and(|heard| now - heard <= TABLE_VALIDITY);
         if is_known {
-            self.active.copy_from_slice(&inbox.regions.active);
+            self.table.active.copy_from_slice(&inbox.regions.active);
         } else {
-            self.active.fill(true);
+            self.table.active.fill(true);
         }
         let table = &inbox.regions;
         let may_have_changed = table.is_editable && !is_known || self.awaits_regions && inbox.regions_heard.is_none();
@@ -182,7 +185,7 @@ impl GuardedRobot {
         std::mem::swap(&mut inbox.cell, &mut next.cell_of_inbox);
         std::mem::swap(&mut inbox.number, &mut next.number);
         self.monitor.replace(&mut next.monitor, &next.same);
-        std::mem::swap(&mut self.active, &mut next.active);
+        std::mem::swap(&mut self.table.active, &mut next.active);
         std::mem::swap(&mut self.cell, &mut next.cell);
         std::mem::swap(&mut self.setup, &mut next.setup);
         std::mem::swap(&mut self.sources, &mut next.sources);
@@ -301,7 +304,7 @@ impl GuardedRobot {
 
     fn switch_regions(&mut self) {
         for (local, region) in self.setup.regions.iter().enumerate() {
-            let (id, on) = (RegionId(local), self.active[region.0]);
+            let (id, on) = (RegionId(local), self.table.active[region.0]);
             let monitor = self.monitor.monitor_mut();
             if monitor.is_active(id) != on {
                 // Permanent regions are always on in a table, so the switch is never refused.

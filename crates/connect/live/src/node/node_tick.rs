@@ -206,7 +206,7 @@ impl NodeTick {
                 }
                 (outgoing.t_s, outgoing.sequence) = (now.0 as f64 * 1e-6, guarded.sequence());
                 outgoing.doubt = guarded.doubt;
-                outgoing.table = guarded.table;
+                outgoing.table = guarded.table.revision;
                 outgoing.health = std::mem::replace(health, HealthStatus { tick_max_us: 0, ..*health });
                 *published = Some(now);
             }
