@@ -211,3 +211,71 @@ impl Judge {
         self.zones.retain(|zone| zone.name != name);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::process_clock::set_true_us;
+    use super::*;
+
+    fn zone(name: &str, z: f64, named: Vec<usize>) -> Zone {
+        Zone { name: name.into(), x: 0.0, z, radius: 0.1, named, since_us: 0 }
+    }
+
+    fn found(judge: &Judge, what: &str) -> usize {
+        judge.findings.wrong.iter().filter(|wrong| wrong.contains(what)).count()
+    }
+
+    #[test]
+    fn what_must_not_occur_is_found_once() {
+        set_true_us(10_000_000);
+        let mut judge = Judge::new(Follows::Nothing, &[0.1, 0.1]);
+        let slow = [0.5, 0.5];
+        judge.look(&[0.8, 0.1], &slow);
+        assert!(judge.findings.wrong.is_empty() && judge.findings.passages == 1);
+        for _ in 0..3 {
+            judge.look(&[0.8, 0.8], &slow);
+        }
+        assert_eq!(found(&judge, "r1 enters shared0 while r0 is inside"), 1);
+        judge.in_force(zone("far", 1.5, vec![]), &[0.8, 0.8]);
+        judge.look(&[1.5, 0.8], &slow);
+        judge.look(&[1.5, 2.3], &slow);
+        assert_eq!((found(&judge, "r0 enters far"), found(&judge, "r1 enters wall")), (1, 1));
+        judge.in_force(zone("on it", 1.5, vec![]), &[1.5, 2.3]);
+        assert_eq!(found(&judge, "r0 is inside on it"), 1);
+        judge.cart_on_since_us = Some(0);
+        judge.look(&[1.25, 2.3], &slow);
+        assert_eq!(found(&judge, "r0 enters cart"), 1);
+    }
+
+    #[test]
+    fn what_an_answer_names_and_what_a_change_frees_is_excused() {
+        set_true_us(1_000_000);
+        let mut judge = Judge::new(Follows::Nothing, &[0.1, 0.1]);
+        judge.in_force(zone("named", 1.5, vec![0]), &[0.1, 0.1]);
+        judge.look(&[1.5, 0.1], &[0.5, 0.0]);
+        assert!(judge.findings.wrong.is_empty());
+        for (is_refused, expected) in [(false, 0), (true, 1)] {
+            let mut judge = Judge::new(Follows::Nothing, &[0.1, 0.1]);
+            judge.in_force(zone("moved", 1.5, vec![]), &[0.1, 0.1]);
+            judge.begin_change("moved");
+            judge.look(&[1.5, 0.1], &[0.5, 0.0]);
+            judge.end_change(is_refused);
+            assert_eq!(judge.findings.wrong.len(), expected);
+        }
+    }
+
+    /// A region that comes to a carriage at rest, or faster than it brakes, is not entered.
+    #[test]
+    fn a_carriage_comes_to_a_moving_region_by_its_own_motion_only() {
+        set_true_us(0);
+        for (before, after, velocity, expected) in
+            [([0.5, 0.8], [0.7, 0.8], 0.5, 1), ([0.5, 0.9], [0.5, 0.7], 0.0, 0), ([0.5, 0.9], [0.501, 0.7], 0.5, 0)]
+        {
+            let places = |[q, z]: [f64; 2]| [0.1, q, z];
+            let mut judge = Judge::new(Follows::Carriage, &places(before));
+            judge.look(&places(before), &[0.0, velocity, 0.0]);
+            judge.look(&places(after), &[0.0, velocity, 0.0]);
+            assert_eq!(found(&judge, "the region that moves"), expected, "{before:?} {after:?}");
+        }
+    }
+}
