@@ -26,7 +26,13 @@ pub(crate) struct ZoneClient {
     slots: Vec<SlotSession>,
     /// True if the robot's deceleration is stated: only then can a moving robot be proven to stop outside.
     proves_stops: bool,
+    /// Time of the last update, s.
+    updated_s: Option<f64>,
 }
+
+/// Time without an update after which a robot before a region does not go on with a grant that has ended, s: the validity
+/// of grants, after which another guard of the robot may have given its slot up.
+const PAUSE_S: f64 = 0.05;
 
 /// One slot, as used by the robot.
 #[derive(Debug)]
@@ -83,12 +89,13 @@ impl ZoneClient {
                 arbiter.register(slot, *robot);
             }
         }
-        Ok(Self { interlock, slots, proves_stops })
+        Ok(Self { interlock, slots, proves_stops, updated_s: None })
     }
 
     /// Publishes the robot's occupancy and requests the slots that it is near. A tick with invalid input does not call this:
     /// the published occupancy and the held slots stay as they are.
     pub(crate) fn update(&mut self, status: impl Fn(RegionId) -> RegionStatus, now_s: f64, log: &mut EventLog) {
+        let has_paused = self.updated_s.replace(now_s).is_some_and(|before_s| now_s - before_s > PAUSE_S);
         for session in &mut self.slots {
             session.observe(&status, self.proves_stops, now_s);
         }
@@ -98,7 +105,7 @@ impl ZoneClient {
         for session in &mut self.slots {
             let state = match &self.interlock {
                 Interlock::Shared(arbiter, robot) => session.shared_state(arbiter, *robot),
-                Interlock::Granted(grants) => session.granted_state(grants.may_enter(session.slot)),
+                Interlock::Granted(grants) => session.granted_state(grants.may_enter(session.slot), has_paused),
             };
             if state != session.state {
                 session.log_change(state, log);
@@ -114,6 +121,7 @@ impl ZoneClient {
     /// Continues from the client of a former monitor of the same robot: copies what it holds, and where the robot was
     /// found.
     pub(crate) fn continue_from(&mut self, former: &Self) {
+        self.updated_s = former.updated_s;
         for session in &mut self.slots {
             let Some(before) = former.slots.iter().find(|s| s.slot == session.slot) else { continue };
             let SlotSession { occupancy, is_near_active_region, grant, state, left_s, .. } = *before;
@@ -246,9 +254,11 @@ impl SlotSession {
     }
 
     /// The state with grants from outside. A grant that ends when the robot cannot stop outside any more counts as used:
-    /// stopping the robot inside the region has no benefit.
-    fn granted_state(&self, may_enter: bool) -> SlotState {
-        let goes_on = self.state == SlotState::Held && self.occupancy.occupies();
+    /// stopping the robot inside the region has no benefit. After a pause its controller has stopped it: outside it waits
+    /// until the grant is confirmed.
+    fn granted_state(&self, may_enter: bool, has_paused: bool) -> SlotState {
+        let is_under_way = self.occupancy == Occupancy::Inside || self.occupancy == Occupancy::Committed && !has_paused;
+        let goes_on = self.state == SlotState::Held && is_under_way;
         if may_enter || goes_on {
             SlotState::Held
         } else if self.is_near_active_region {
