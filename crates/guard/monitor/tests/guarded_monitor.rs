@@ -58,6 +58,24 @@ fn a_committed_robot_goes_on_without_the_network_and_keeps_the_slot() {
     cell.until("the other one is inside", |cell| cell.carriages[1].is_inside());
 }
 
+/// Its node pauses, or sees nothing: the controller stops it. Another node of the robot may have given the slot up meanwhile.
+#[test]
+fn a_committed_robot_waits_after_a_pause_until_its_grant_is_confirmed() {
+    let mut cell = Cell::new(vec![Carriage::new(0, 0.0, 1.0)]);
+    cell.until("it is committed", |cell| state(cell, 0) == ExchangeState::Committed);
+    cell.carriages[0].program = 0.0;
+    // At rest just before the border, where it cannot be proven to stop outside once it moves.
+    cell.carriages[0].by_hand = Some(0.0);
+    (cell.carriages[0].x, cell.carriages[0].v) = (BORDERS.0 - 0.001, 0.0);
+    (cell.carriages[0].is_connected, cell.carriages[0].is_seen) = (false, false);
+    cell.run(0.1);
+    (cell.carriages[0].is_seen, cell.carriages[0].by_hand, cell.carriages[0].program) = (true, None, 1.0);
+    cell.run(1.0);
+    assert!(cell.carriages[0].x < BORDERS.0, "{}", cell.carriages[0].x);
+    cell.carriages[0].is_connected = true;
+    cell.until("it goes on", |cell| cell.carriages[0].x > BORDERS.1);
+}
+
 #[test]
 fn a_region_that_is_switched_off_keeps_its_slot_until_the_robot_has_left() {
     let mut cell = Cell::new(vec![Carriage::new(0, 0.0, 1.0), Carriage::new(1, -0.5, 1.0)]);
