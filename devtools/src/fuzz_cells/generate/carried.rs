@@ -10,7 +10,7 @@ use super::encounter::Encounter;
 use super::moving_object::{local, moving_object, object_frame, text, vector};
 use super::settings::{Places, settings};
 use super::{any_robot, rail, region, robot};
-use crate::fuzz_cells::oracle::Arm;
+use crate::fuzz_cells::oracle::{Arm, Frame};
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{CellSpec, FollowSpec, MotionSpec, ObjectSpec, RegionSpec, RobotSpec, StepSpec};
 
@@ -70,16 +70,20 @@ fn on_a_link(spec: &mut CellSpec, folder: &Path, random: &mut Random) {
         if random.percent(40) {
             carrier.rpy = [random.between(-PI, PI), random.between(-FRAC_PI_2, FRAC_PI_2), random.between(-PI, PI)];
         }
+        if random.percent(50) {
+            carrier.hand.tcp = Some([random.between(-0.2, 0.2), random.between(-0.2, 0.2), random.between(0.0, 0.4)]);
+        }
         let mut with = spec.clone();
         with.robots.push(carrier);
         let Some(Encounter { cell, q, place, .. }) = Encounter::new(&with, folder, random) else { continue };
         let is_mechanism = random.percent(40);
-        let frame = if is_mechanism { "link_1" } else { random.one(&["flange", "flange", "tcp", "link_1"]) };
+        let frame = if is_mechanism { "link_1" } else { random.one(&["flange", "tcp", "tcp", "link_1"]) };
         let robot = &cell.robots[1];
         let link = if frame == "link_1" { link_named(&cell, frame) } else { Some(robot.flange.0) };
         let Some(link) = link else { continue };
-        let local = local(&Arm::new(robot).frames(&q[1])[link], place);
-        let region = region::at(&with, 0, local, "m0", random);
+        let link = Arm::new(robot).frames(&q[1])[link];
+        let carried = if frame == "tcp" { link.then(&Frame::of(&robot.tcp_in_flange)) } else { link };
+        let region = region::at(&with, 0, local(&carried, place), "m0", random);
         let follow = Some(FollowSpec::Robot { robot: 1, frame });
         with.regions.push(RegionSpec { follow, robots: vec![0], ..region });
         with.robots[1].is_mechanism = is_mechanism;

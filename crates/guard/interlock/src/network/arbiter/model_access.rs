@@ -16,14 +16,24 @@ impl Arbiter {
         if self.robots.iter().all(|robot| robot.heard.is_some()) {
             self.started = None;
         }
-        for robot in &mut self.robots {
+        for (r, robot) in self.robots.iter_mut().enumerate() {
             let is_trusted = robot.is_trusted;
-            for report in &mut robot.reports {
-                let occupancy = super::super::model::renaming::what_counts(report.occupancy);
+            for (report, slot) in robot.reports.iter_mut().zip(&self.slots) {
+                let is_kept = slot.holder.is_some_and(|h| h.robot.0 == r && h.token.is_none());
+                // Whether it is committed or inside only counts while the slot is kept for it.
+                let occupancy = match super::super::model::renaming::what_counts(report.occupancy) {
+                    Occupancy::Committed if !is_kept => Occupancy::Inside,
+                    occupancy => occupancy,
+                };
                 let seen = SlotReport { occupancy, token: report.token.and(any), ..SlotReport::UNKNOWN };
                 *report = if is_trusted { seen } else { SlotReport::UNKNOWN };
             }
         }
+    }
+
+    /// Whether a robot holds a slot without the right to enter.
+    pub(crate) fn is_kept(&self, slot: SlotId) -> bool {
+        self.slots[slot.0].holder.is_some_and(|holder| holder.token.is_none())
     }
 
     pub(crate) fn holder_token_mut(&mut self, slot: SlotId) -> Option<(RobotSlot, &mut Token)> {

@@ -7,10 +7,10 @@ use crate::{Boot, RobotSlot, SlotId};
 pub(super) enum Step {
     /// The robot completes what the last tick let it do.
     Remain,
-    /// The tick finds the robot at the next place, for which it needs no grant.
-    Advance,
-    /// The tick lets the robot enter the next place, where the next tick will find it.
-    Enter,
+    /// The tick finds the robot at this place, for which it needs no grant.
+    Advance(usize),
+    /// The tick lets the robot enter this place, where the next tick will find it.
+    Enter(usize),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,5 +59,7 @@ pub(super) enum Next {
 pub(super) enum Report {
     /// It is outside, and gives up the slot.
     Outside,
+    /// It can no longer stop outside, or does not know that it can.
+    Committed,
     Inside,
 }

@@ -12,6 +12,7 @@ use super::state::FaultBudget;
 
 /// A number of faults without limit.
 pub(super) const ANY: u8 = FaultBudget::ANY;
+use super::programs::Program;
 use super::{CellModel, Clock, EXCLUSION, PlantedFault};
 
 /// Two robots and one slot.
@@ -27,8 +28,12 @@ pub(super) const CROSSING_AND_ONE: &[&[&str]] = &[&["_.X.__", "__.XX."], &["__.X
 
 /// Two robots that pass through two slots in opposite directions, and a third one that enters both at once.
 pub(super) const THREE_AND_TWO: &[&[&str]] = &[&["_.X.__", "__.XX."], &["__.XX.", "_.X.__"], &["_.X", "_.X"]];
+/// Three robots in two slots, which come to rest before each, turn back, or pass from one into the other.
+pub(super) const RESTING: &[&[&str]] = &[&["_.cX.c_", "__.cXX."], &["__.cXX.", "_.cX.c_"], &["_.cXc", "_..cX"]];
 /// Two robots that stay in the warning zone or inside.
 const FREE: &[&[&str]] = &[&[".X"], &[".X"]];
+/// The robots of `FREE`, which also come to rest before the border, where they count as committed.
+const FREE_RESTING: &[&[&str]] = &[&[".cX"], &[".cX"]];
 
 /// A whole number from an environment variable.
 pub(super) fn setting(name: &str) -> Option<usize> {
@@ -75,8 +80,15 @@ pub(super) fn with(guard_crashes: u8, arbiter_crashes: u8, clears: u8, programs:
 }
 
 /// Two robots and a slot of any cell, with faults without limit.
-pub(super) fn free(guard_crashes: u8, arbiter_crashes: u8, clears: u8) -> CellModel {
+fn free(guard_crashes: u8, arbiter_crashes: u8, clears: u8) -> CellModel {
     CellModel { is_free: true, ..with(guard_crashes, arbiter_crashes, clears, FREE) }
+}
+
+/// Like `free`, with robots that may be committed without a grant.
+pub(super) fn free_resting(guard_crashes: u8, arbiter_crashes: u8, clears: u8) -> CellModel {
+    let model = with(guard_crashes, arbiter_crashes, clears, FREE_RESTING);
+    let programs = model.programs.into_iter().map(Program::in_any_order).collect();
+    CellModel { is_free: true, programs, ..model }
 }
 
 impl CellModel {
@@ -123,6 +135,12 @@ fn checks() -> Vec<Check> {
         few("any cell, two arbiters, guards", free(ANY, 0, 0).two_arbiters()),
         few("any cell, two arbiters, crashes", free(ANY, ANY, 0).two_arbiters()),
         few("any cell, two arbiters, clears", free(0, 0, ANY).two_arbiters()),
+        few("any cell, at rest", free_resting(0, 0, 0)),
+        few("any cell, at rest, guards", free_resting(ANY, 0, 0)),
+        // So many that it finds a committed robot that an arbiter lets in which has started again.
+        Check { states: 60_000, ..first("any cell, at rest, arbiter", free_resting(0, ANY, 0)) },
+        few("any cell, at rest, clears", free_resting(0, 0, ANY)),
+        few("any cell, at rest, every fault", free_resting(ANY, ANY, ANY)),
         first("crossing and one", CellModel::new(CROSSING_AND_ONE)),
         first("crossing and one, every fault", with(1, 1, 1, CROSSING_AND_ONE)),
     ]
@@ -145,7 +163,8 @@ fn planted_faults_are_found() {
     use PlantedFault::{HastyClear, TokensUnchecked, UnilateralRelease, UnseenRelease};
     for planted in [HastyClear, TokensUnchecked, UnilateralRelease, UnseenRelease] {
         let cell = if planted == UnseenRelease { FROM_BEYOND } else { PAIR };
-        for (name, model) in [("pair", with(0, 0, 1, cell)), ("any cell", free(0, 0, 1))] {
+        let any = [("any cell", free(0, 0, 1)), ("any cell, at rest", free_resting(0, 0, 1))];
+        for (name, model) in std::iter::once(("pair", with(0, 0, 1, cell))).chain(any) {
             let explored = explore(&format!("{planted:?}, {name}"), &CellModel { planted, ..model }, 2_000_000);
             assert!(explored.counterexample.is_some(), "{planted:?} is not noticed: {name}");
         }

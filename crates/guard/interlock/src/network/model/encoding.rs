@@ -49,7 +49,7 @@ impl Codec {
             state.guards[r].code(self);
             let RobotState { place, enters } = &mut state.robots[r];
             self.index(place);
-            self.flag(enters);
+            self.option(enters, 0, Codec::index);
             self.list(&mut state.to_arbiter[r], || StateMessage::with_slots(slots), Self::message);
             self.list(&mut state.to_guard[r], || GrantsMessage::with_slots(slots), Self::answer);
         }

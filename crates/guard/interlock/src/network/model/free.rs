@@ -12,8 +12,10 @@
 //! - **Requests to give a grant up and halts**, because of cycles or of robots that are found inside: a guard may be
 //!   asked to give up its grant whenever it sends. A guard that must halt does nothing that a guard which is asked
 //!   could not do too: the robot of such a guard may also stay outside.
-//! - **Programs**: a robot is in the warning zone or inside. A robot that is outside may do nothing that a robot in
-//!   the warning zone could not do, if it may be asked to give up its grant, and need not request one.
+//! - **Programs**: a robot is in the warning zone or inside; in a larger model also at rest before the border, where it may
+//!   count as one that can no longer stop outside, in any order. A robot that is outside may do nothing that a robot in the
+//!   warning zone could not do, if it may be asked to give up its grant, and need not request one. A robot that moves and can
+//!   no longer stop has been let in: it is on its way from the warning zone.
 //!
 //! So each step of a cell, seen from two of its robots and one slot, is none, one or a few steps of this model.
 //! `projection` checks this for each step of long schedules of larger cells.
@@ -21,7 +23,7 @@
 use super::CellModel;
 use super::action::{ArbiterStep, Next, Report};
 use super::state::{CellState, NOW};
-use crate::{Boot, Occupancy, RobotSlot, SlotReport, StateMessage, Token};
+use crate::{Boot, Occupancy, RobotSlot, SlotId, SlotReport, StateMessage, Token};
 
 const UNDECIDED: &[Next] = &[Next::Undecided];
 const ANY: &[Next] = &[Next::Undecided, Next::Robot(RobotSlot(0)), Next::Robot(RobotSlot(1)), Next::Other];
@@ -29,7 +31,11 @@ const ANY: &[Next] = &[Next::Undecided, Next::Robot(RobotSlot(0)), Next::Robot(R
 impl CellModel {
     /// The choices for a step of the arbiter that may free the slot if this robot holds it.
     pub(super) fn nexts(&self, state: &CellState, sender: Option<RobotSlot>) -> &'static [Next] {
-        let may_be_free = self.slots().any(|slot| state.arbiter.holder(slot).is_none_or(|h| Some(h) == sender));
+        let may_be_granted = |slot: SlotId| {
+            let is_kept = state.arbiter.is_kept(slot);
+            state.arbiter.holder(slot).is_none_or(|h| Some(h) == sender || is_kept && h != state.other())
+        };
+        let may_be_free = self.slots().any(may_be_granted);
         if self.is_free && may_be_free { ANY } else { UNDECIDED }
     }
 
@@ -54,13 +60,18 @@ impl CellModel {
             let nexts = self.nexts(state, Some(state.other()));
             steps.extend(nexts.iter().map(|next| ArbiterStep::Other(Report::Outside, *next)));
             steps.push(ArbiterStep::Other(Report::Inside, Next::Undecided));
+            steps.extend(nexts.iter().map(|next| ArbiterStep::Other(Report::Committed, *next)));
             steps.extend(self.robots().map(ArbiterStep::Answer));
         }
     }
 
     pub(super) fn hear_other(&self, state: &mut CellState, report: Report, next: Next) {
         self.choose(state, next);
-        let occupancy = if report == Report::Inside { Occupancy::Inside } else { Occupancy::Outside };
+        let occupancy = match report {
+            Report::Outside => Occupancy::Outside,
+            Report::Committed => Occupancy::Committed,
+            Report::Inside => Occupancy::Inside,
+        };
         let released = Some(Token { boot: Boot(u64::MAX), number: u64::MAX });
         let report = SlotReport { occupancy, wants: next == Next::Other, token: None, released };
         let (boot, arbiter) = (Boot(1), state.arbiter.boot());

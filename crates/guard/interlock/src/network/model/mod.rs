@@ -127,14 +127,14 @@ impl CellModel {
         Guard::new(robot, self.slots, 0, boot).validity(validity)
     }
 
-    fn occupies(&self, robot: RobotSlot, place: usize, slot: SlotId) -> bool {
-        self.programs[robot.0].occupancy(place, slot).occupies()
+    fn is_inside(&self, robot: RobotSlot, place: usize, slot: SlotId) -> bool {
+        self.programs[robot.0].is_inside(place, slot)
     }
 
     /// Whether the robot is in a slot, or will be in it whatever is decided now.
     fn is_in(&self, state: &CellState, robot: RobotSlot, slot: SlotId) -> bool {
         let RobotState { place, enters } = state.robots[robot.0];
-        self.occupies(robot, place, slot) || enters && self.occupies(robot, self.programs[robot.0].next(place), slot)
+        self.is_inside(robot, place, slot) || enters.is_some_and(|next| self.is_inside(robot, next, slot))
     }
 
     /// Whether at most one robot is in each slot or may enter it.
@@ -145,30 +145,37 @@ impl CellModel {
         })
     }
 
-    /// The slots that the robot must be granted to move on from a place.
-    fn needed(&self, robot: RobotSlot, place: usize) -> impl Iterator<Item = SlotId> + '_ {
-        let next = self.programs[robot.0].next(place);
-        let enters = move |s: &SlotId| self.occupies(robot, next, *s) && !self.occupies(robot, place, *s);
+    /// The slots that the robot must be granted to move on from a place to the next one.
+    fn needed(&self, robot: RobotSlot, place: usize, next: usize) -> impl Iterator<Item = SlotId> + '_ {
+        let enters = move |s: &SlotId| self.is_inside(robot, next, *s) && !self.is_inside(robot, place, *s);
         self.slots().filter(enters)
+    }
+
+    /// What a robot may do in a tick.
+    fn ticks(&self, state: &CellState, r: RobotSlot) -> Vec<Step> {
+        let RobotState { place, enters } = state.robots[r.0];
+        let nexts = |place| self.programs[r.0].nexts(place);
+        let advance = nexts(place).map(Step::Advance);
+        let enter = nexts(enters.unwrap_or(place)).map(Step::Enter);
+        std::iter::once(Step::Remain).chain(advance).chain(enter).collect()
     }
 
     /// Performs one tick; `None` if the step is impossible.
     fn tick(&self, state: &mut CellState, r: RobotSlot, step: Step) -> Option<()> {
         let RobotState { place, enters } = state.robots[r.0];
-        let is_advance = step == Step::Advance;
-        if is_advance && (enters || self.needed(r, place).next().is_some()) {
-            return None;
-        }
-        let found = if enters || is_advance { self.programs[r.0].next(place) } else { place };
-        if step == Step::Enter {
-            let guard = &state.guards[r.0];
-            let mut needed = self.needed(r, found).peekable();
-            needed.peek()?;
-            if !needed.all(|slot| guard.may_enter(slot, NOW)) {
-                return None;
+        let (found, enters) = match (step, enters) {
+            (Step::Remain, _) => (enters.unwrap_or(place), None),
+            (Step::Advance(_), Some(_)) => return None,
+            (Step::Advance(next), None) => self.needed(r, place, next).next().is_none().then_some((next, None))?,
+            (Step::Enter(next), _) => {
+                let found = enters.unwrap_or(place);
+                let mut needed = self.needed(r, found, next).peekable();
+                needed.peek()?;
+                let may_enter = needed.all(|slot| state.guards[r.0].may_enter(slot, NOW));
+                may_enter.then_some((found, Some(next)))?
             }
-        }
-        state.robots[r.0] = RobotState { place: found, enters: step == Step::Enter };
+        };
+        state.robots[r.0] = RobotState { place: found, enters };
         for slot in self.slots() {
             state.guards[r.0].observe(slot, self.programs[r.0].occupancy(found, slot));
         }
@@ -336,7 +343,7 @@ impl Model for CellModel {
             arbiter: Arbiter::new(self.settings(), Boot(1)),
             second: None,
             guards: self.robots().map(|r| self.guard(r, Boot(1))).collect(),
-            robots: vec![RobotState { place: 0, enters: false }; robots],
+            robots: vec![RobotState { place: 0, enters: None }; robots],
             to_arbiter: vec![Vec::new(); robots],
             to_guard: vec![Vec::new(); robots],
             faults: self.faults,
@@ -349,7 +356,7 @@ impl Model for CellModel {
     fn actions(&self, state: &CellState, actions: &mut Vec<Action>) {
         let mut state = state.clone();
         for r in self.robots() {
-            actions.extend([Step::Remain, Step::Advance, Step::Enter].map(|step| Action::Tick(r, step)));
+            actions.extend(self.ticks(&state, r).into_iter().map(|step| Action::Tick(r, step)));
             actions.push(Action::Send(r));
             if self.is_free {
                 actions.push(Action::SendAsked(r));

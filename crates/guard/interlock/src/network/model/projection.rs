@@ -7,7 +7,7 @@ use stateright::Model;
 
 use super::CellModel;
 use super::action::{Action, ArbiterStep, Next, Report, Step};
-use super::checks::{ANY, CROSSING_AND_ONE, THREE_AND_TWO, free, setting, with};
+use super::checks::{ANY, CROSSING_AND_ONE, RESTING, THREE_AND_TWO, free_resting, setting, with};
 use super::mixer::Mixer;
 use super::state::{CellState, FaultBudget, RobotState};
 use crate::{Occupancy, RobotSlot, SlotId};
@@ -18,6 +18,10 @@ const STEPS: usize = 3_000;
 const LONGEST: usize = 400;
 /// Steps between which numbers are not replaced by their ranks. Guards remember the times of few messages.
 const UNRANKED: usize = 4;
+
+/// Places of the model of any cell: at rest before the border, and inside.
+const RESTS: usize = 1;
+const INSIDE: usize = 2;
 
 /// A rising number for each decision.
 struct Dice(u64);
@@ -34,8 +38,13 @@ impl Dice {
 /// A robot, seen from one slot.
 fn project_robot(cell: &CellModel, state: &CellState, robot: RobotSlot, slot: SlotId) -> RobotState {
     let RobotState { place, enters } = state.robots[robot.0];
-    let is_inside = cell.occupies(robot, place, slot);
-    RobotState { place: usize::from(is_inside), enters: enters && cell.needed(robot, place).any(|s| s == slot) }
+    let enters = enters.filter(|next| cell.needed(robot, place, *next).any(|s| s == slot));
+    let place = match cell.programs[robot.0].occupancy(place, slot) {
+        Occupancy::Inside => INSIDE,
+        Occupancy::Committed => RESTS,
+        _ => 0,
+    };
+    RobotState { place, enters: enters.map(|_| INSIDE) }
 }
 
 /// A state of a cell, seen from two robots and one slot.
@@ -69,7 +78,7 @@ fn leads_to(model: &CellModel, from: &CellState, to: &CellState, steps: usize, i
     model.actions(from, &mut actions);
     if !is_first {
         actions.retain(|action| match action {
-            Action::Tick(_, step) => *step == Step::Enter,
+            Action::Tick(_, step) => matches!(step, Step::Enter(_)),
             Action::Arbiter(ArbiterStep::Answer(_)) => true,
             // A third robot lets an arbiter start again.
             Action::Arbiter(ArbiterStep::Other(report, next)) => (*report, *next) == (Report::Outside, Next::Undecided),
@@ -119,18 +128,24 @@ fn sharing(cell: &CellModel) -> Vec<([RobotSlot; 2], SlotId)> {
 }
 
 /// Three robots and two slots, with every fault any number of times. Robots keep their index.
-fn cells() -> [(&'static str, CellModel); 3] {
+fn cells() -> [(&'static str, CellModel); 4] {
     let cell = |programs| CellModel { classes: vec![0, 1, 2], ..with(ANY, ANY, ANY, programs) };
     let three_in_two = cell(THREE_AND_TWO);
     let faults = FaultBudget { is_set_back: true, ..three_in_two.faults };
     let set_back = CellModel { faults, ..cell(THREE_AND_TWO) };
-    [("crossing and one", cell(CROSSING_AND_ONE)), ("three in two", three_in_two), ("set back", set_back)]
+    let resting = cell(RESTING);
+    [
+        ("crossing and one", cell(CROSSING_AND_ONE)),
+        ("three in two", three_in_two),
+        ("set back", set_back),
+        ("resting", resting),
+    ]
 }
 
 #[test]
 fn each_step_of_three_robots_and_two_slots_is_possible_in_the_model_of_any_cell() {
     for (name, cell) in cells() {
-        let model = CellModel { faults: cell.faults, ..free(ANY, ANY, ANY) };
+        let model = CellModel { faults: cell.faults, ..free_resting(ANY, ANY, ANY) };
         let initial = cell.init_states().remove(0);
         let mut moved = 0;
         for (pair, slot) in sharing(&cell) {

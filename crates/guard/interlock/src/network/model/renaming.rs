@@ -7,8 +7,7 @@ pub(crate) fn what_counts(occupancy: Occupancy) -> Occupancy {
     match occupancy {
         Occupancy::Unknown => Occupancy::Unknown,
         Occupancy::Outside | Occupancy::Warning => Occupancy::Outside,
-        // Robots of the model are never committed without being inside.
-        Occupancy::Committed | Occupancy::Inside => Occupancy::Inside,
+        Occupancy::Committed | Occupancy::Inside => occupancy,
     }
 }
 

@@ -24,8 +24,8 @@ pub(super) struct CellState {
 pub(super) struct RobotState {
     /// Index into its program.
     pub(super) place: usize,
-    /// True if the last tick let the robot enter the next place, where the next tick will find it.
-    pub(super) enters: bool,
+    /// The place that the last tick let the robot enter, where the next tick will find it.
+    pub(super) enters: Option<usize>,
 }
 
 /// Faults that may still happen.
