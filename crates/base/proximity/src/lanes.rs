@@ -179,6 +179,13 @@ pub(crate) fn array16<S: Simd>(x: W16<S>) -> [f32; 16] {
     out
 }
 
+#[inline(always)]
+pub(crate) fn array8<S: Simd>(x: W8<S>) -> [f32; 8] {
+    let mut out = [0.0; 8];
+    x.store_slice(&mut out);
+    out
+}
+
 /// Converts a vector to single precision.
 #[inline]
 pub(crate) fn narrow(v: Vec3) -> [f32; 3] {

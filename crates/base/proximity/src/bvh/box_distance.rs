@@ -4,9 +4,11 @@ use elbowroom_spatial::{Aabb, Pose, Vec3};
 use fearless_simd::{Simd, dispatch, prelude::*};
 
 use super::bvh16::Bvh16;
-use super::node::{ARITY, Node};
+use super::node::{ARITY, LEAF_SIZE, Leaf, Node};
 use super::node_bound::NodeBound;
-use crate::lanes::{F32_ERROR, V3, W16, abs16, array16, detected_simd_level, load16, narrow, splat16};
+use crate::lanes::{
+    F32_ERROR, V3, W8, W16, abs16, array8, array16, detected_simd_level, load_corners, load16, narrow, splat8, splat16,
+};
 
 /// Distance from a box in its own frame.
 pub(crate) struct BoxDistance {
@@ -66,6 +68,29 @@ impl BoxDistance {
         in_mesh.dot(in_mesh).max(own.dot(own)).sqrt().max(slab) - self.error
     }
 
+    /// The distance of each triangle's bounds in the frame of the box, or the gap along its normal.
+    #[inline(always)]
+    fn triangles<S: Simd>(&self, simd: S, leaf: &Leaf) -> W8<S> {
+        let zero = W8::splat(simd, 0.0);
+        let center = splat8(simd, self.center);
+        let [p, q, r] = load_corners(simd, &leaf.corner).map(|corner| corner.minus(center));
+        let gap = |axis: [f32; 3], half: f32| {
+            let along = splat8(simd, axis);
+            let (p, q, r) = (p.dot(along), q.dot(along), r.dot(along));
+            (p.min(q).min(r) - half).max(-p.max(q).max(r) - half).max(zero)
+        };
+        let own = V3(gap(self.axes[0], self.half[0]), gap(self.axes[1], self.half[1]), gap(self.axes[2], self.half[2]));
+        let n = q.minus(p).cross(r.minus(p));
+        // Not longer than 1.
+        let n = n.times(W8::splat(simd, 0.999_999) / n.dot(n).max(1e-30).sqrt());
+        let (p, q, r) = (n.dot(p), n.dot(q), n.dot(r));
+        let reach = |axis: [f32; 3], half: f32| n.dot(splat8(simd, axis)).abs() * half;
+        let reach =
+            reach(self.axes[0], self.half[0]) + reach(self.axes[1], self.half[1]) + reach(self.axes[2], self.half[2]);
+        let slab = p.min(q).min(r).max(-p.max(q).max(r)) - reach;
+        own.dot(own).sqrt().max(slab) - self.error
+    }
+
     /// Gap along each child's slab normal.
     #[inline(always)]
     fn slab_gap<S: Simd>(&self, simd: S, node: &Node) -> W16<S> {
@@ -85,6 +110,10 @@ impl BoxDistance {
 impl NodeBound for BoxDistance {
     fn lower_bounds(&self, node: &Node) -> [f32; ARITY] {
         dispatch!(detected_simd_level(), simd => array16(self.lanes(simd, node)))
+    }
+
+    fn leaf_bounds(&self, leaf: &Leaf) -> [f32; LEAF_SIZE] {
+        dispatch!(detected_simd_level(), simd => array8(self.triangles(simd, leaf)))
     }
 }
 

@@ -1,11 +1,8 @@
 //! Traversal of one tree in the order of a lower bound.
 
-use fearless_simd::{Simd, dispatch, prelude::*};
-
 use super::bvh16::Bvh16;
-use super::node::{ARITY, LEAF_SIZE, Leaf, Node};
+use super::node::{ARITY, LEAF_SIZE};
 use super::node_bound::NodeBound;
-use crate::lanes::{V3, W8, detected_simd_level, load_corners};
 
 /// A subtree still to be visited.
 #[derive(Clone, Copy)]
@@ -21,7 +18,23 @@ const STACK_SIZE: usize = 16 * 10;
 impl Bvh16 {
     /// Calls `leaf` with the index of every triangle whose bound is not above `limit`, smallest bound of siblings first;
     /// `leaf` returns the limit for the rest of the traversal.
-    pub(crate) fn traverse(&self, query: &dyn NodeBound, mut limit: f32, leaf: &mut dyn FnMut(usize) -> f32) {
+    pub(crate) fn traverse(&self, query: &dyn NodeBound, limit: f32, leaf: &mut dyn FnMut(usize) -> f32) {
+        self.traverse_leaves(query, limit, &mut |mut triangles, mut limit| {
+            while let Some((_, triangle)) = triangles.next(limit) {
+                limit = leaf(triangle);
+            }
+            limit
+        });
+    }
+
+    /// Calls `leaf` with the triangles of every leaf whose bound is not above `limit`, and the limit; it returns the limit
+    /// for the rest of the traversal.
+    pub(crate) fn traverse_leaves(
+        &self,
+        query: &dyn NodeBound,
+        mut limit: f32,
+        leaf: &mut dyn FnMut(LeafTriangles<'_>, f32) -> f32,
+    ) {
         let mut stack = [PendingNode { bound: 0.0, number: 0, height: 0 }; STACK_SIZE];
         stack[0] = PendingNode { bound: f32::NEG_INFINITY, number: 0, height: self.height() as u8 };
         let mut len = 1;
@@ -34,7 +47,7 @@ impl Bvh16 {
             }
             let number = number as usize;
             if height == 0 {
-                limit = self.visit_leaf(query, number, limit, leaf);
+                limit = leaf(LeafTriangles::new(self, query, number), limit);
                 continue;
             }
             let bounds = query.lower_bounds(self.node(height as usize, number));
@@ -48,23 +61,42 @@ impl Bvh16 {
             stack[first..len].reverse();
         }
     }
+}
 
-    fn visit_leaf(&self, query: &dyn NodeBound, number: usize, limit: f32, leaf: &mut dyn FnMut(usize) -> f32) -> f32 {
-        let first = number * LEAF_SIZE;
-        let node = dispatch!(detected_simd_level(), simd => node_of_triangles(simd, &self.leaves[number]));
-        let bounds = query.lower_bounds(&node);
-        let mut left = (1u32 << self.leaf_len(number)) - 1;
-        let mut limit = limit;
-        while let Some(lane) = take_smallest(&bounds, &mut left, limit) {
-            limit = leaf(self.triangle((first + lane) as u32));
-        }
-        limit
+/// The triangles of a leaf that are still to be visited.
+pub(crate) struct LeafTriangles<'t> {
+    tree: &'t Bvh16,
+    first: usize,
+    bounds: [f32; LEAF_SIZE],
+    left: u32,
+}
+
+impl<'t> LeafTriangles<'t> {
+    fn new(tree: &'t Bvh16, query: &dyn NodeBound, number: usize) -> Self {
+        let bounds = query.leaf_bounds(&tree.leaves[number]);
+        Self { tree, first: number * LEAF_SIZE, bounds, left: (1u32 << tree.leaf_len(number)) - 1 }
+    }
+
+    /// Takes the triangle with the smallest bound, if it is not above the limit: its lane and its index.
+    pub fn next(&mut self, limit: f32) -> Option<(usize, usize)> {
+        let lane = take_smallest(&self.bounds, &mut self.left, limit)?;
+        Some((lane, self.triangle(lane)))
+    }
+
+    /// The triangles whose bounds are not above the limit: their lanes and their indices.
+    pub fn within(&self, limit: f32) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let is_within = move |lane: &usize| self.left >> lane & 1 == 1 && !(self.bounds[*lane] > limit);
+        (0..LEAF_SIZE).filter(is_within).map(|lane| (lane, self.triangle(lane)))
+    }
+
+    fn triangle(&self, lane: usize) -> usize {
+        self.tree.triangle((self.first + lane) as u32)
     }
 }
 
 /// Removes the lane of the smallest bound from `left`; `None` if all remaining bounds are above the limit.
 #[inline(always)]
-fn take_smallest(bounds: &[f32; ARITY], left: &mut u32, limit: f32) -> Option<usize> {
+fn take_smallest(bounds: &[f32], left: &mut u32, limit: f32) -> Option<usize> {
     let mut best: Option<usize> = None;
     let mut rest = *left;
     while rest != 0 {
@@ -80,27 +112,4 @@ fn take_smallest(bounds: &[f32; ARITY], left: &mut u32, limit: f32) -> Option<us
         *left &= !(1 << lane);
     }
     best
-}
-
-/// The triangles of a leaf as the children of a node.
-#[inline(always)]
-fn node_of_triangles<S: Simd>(simd: S, leaf: &Leaf) -> Node {
-    let [p, q, r] = load_corners(simd, &leaf.corner);
-    let n = q.minus(p).cross(r.minus(p));
-    let length = n.dot(n).max(1e-30).sqrt();
-    let n = n.times(W8::splat(simd, 0.999_999) / length);
-    let (hp, hq, hr) = (n.dot(p), n.dot(q), n.dot(r));
-    let low = V3(p.0.min(q.0).min(r.0), p.1.min(q.1).min(r.1), p.2.min(q.2).min(r.2));
-    let high = V3(p.0.max(q.0).max(r.0), p.1.max(q.1).max(r.1), p.2.max(q.2).max(r.2));
-    let mut node = Node::EMPTY;
-    let middle = W8::splat(simd, 0.5);
-    let (center, half) = (low.plus(high).times(middle), high.minus(low).times(middle));
-    for (to, from) in [(&mut node.center, center), (&mut node.half, half), (&mut node.normal, n)] {
-        from.0.store_slice(&mut to[0][..LEAF_SIZE]);
-        from.1.store_slice(&mut to[1][..LEAF_SIZE]);
-        from.2.store_slice(&mut to[2][..LEAF_SIZE]);
-    }
-    hp.min(hq).min(hr).store_slice(&mut node.low[..LEAF_SIZE]);
-    hp.max(hq).max(hr).store_slice(&mut node.high[..LEAF_SIZE]);
-    node
 }

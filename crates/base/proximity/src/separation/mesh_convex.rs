@@ -11,8 +11,9 @@ use super::mesh_continuous_witness::{mesh_continuous_witness, tolerances};
 use super::projections;
 use super::segment::Segment;
 use super::support_features::bounding_sphere;
+use super::triangle_box_kernel::{FirstStep, FirstSteps, TriangleLanes};
 use crate::TriMesh;
-use crate::bvh::{BoxDistance, LeastHeight};
+use crate::bvh::{BoxDistance, LeafTriangles, LeastHeight};
 use crate::mesh_mesh::QueryStats;
 use crate::triangle::{nearest_on_triangle, segment_triangle};
 
@@ -65,18 +66,67 @@ impl Best {
         self.gap.map(|g| Gap { lower: self.lower.min(g.distance), ..g })
     }
 
-    /// Offers the gap that `leaf` computes for every triangle that may be within the limit of the core's box.
-    fn search(&mut self, mesh: &TriMesh, query: &BoxDistance, leaf: &dyn Fn(usize, f64) -> Option<Gap>) {
-        mesh.bvh.traverse(query, BoxDistance::limit(&mesh.bvh, self.limit), &mut |triangle| {
-            self.measured += 1;
-            if let Some(gap) = leaf(triangle, self.limit + self.tie_tolerance) {
-                self.offer(triangle, gap);
+    /// Offers the gaps of all triangles that may be within the limit of a core.
+    fn search_beside(&mut self, mesh: &TriMesh, core: &Core, core_in_mesh: &Pose) {
+        let t = core_in_mesh.translation;
+        let extent = mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
+        let scale = 3.0 * extent + t.abs().max_element() + core.size();
+        let query = BoxDistance::new(&mesh.bvh, &core.aabb(), core_in_mesh);
+        match core {
+            Core::Point => {
+                self.search(mesh, &query, &mut |i| Gap::closed(nearest_on_triangle(t, mesh.corners(i)), t, scale));
             }
-            if self.is_done() {
-                return f32::NEG_INFINITY;
+            Core::Segment(half) => {
+                let axis = Segment { middle: t, direction: core_in_mesh.rotation.z_axis(), half: *half };
+                let (p, q) = (axis.at(-half), axis.at(*half));
+                self.search(mesh, &query, &mut |i| {
+                    let near = segment_triangle(p, q, mesh.corners(i));
+                    Gap::closed(near.on_b, near.on_a, scale)
+                });
             }
-            BoxDistance::limit(&mesh.bvh, self.limit + self.tie_tolerance)
+            _ => self.search(mesh, &query, &mut CoreTriangles::new(mesh, core, core_in_mesh, scale)),
+        }
+    }
+
+    /// Offers the gaps of all triangles that may be within the limit of the core's box.
+    fn search(&mut self, mesh: &TriMesh, query: &BoxDistance, gaps: &mut dyn TriangleGaps) {
+        let first = BoxDistance::limit(&mesh.bvh, self.limit);
+        mesh.bvh.traverse_leaves(query, first, &mut |mut triangles, mut limit| {
+            gaps.begin_leaf(&triangles, limit);
+            while let Some((lane, triangle)) = triangles.next(limit) {
+                self.measured += 1;
+                if let Some(gap) = gaps.gap(lane, triangle, self.limit + self.tie_tolerance) {
+                    self.offer(triangle, gap);
+                }
+                if self.is_done() {
+                    return f32::NEG_INFINITY;
+                }
+                limit = BoxDistance::limit(&mesh.bvh, self.limit + self.tie_tolerance);
+            }
+            limit
         });
+    }
+}
+
+/// An upper bound of the gap of a mesh and a convex core: the gap of a triangle that is likely to be near.
+pub(super) fn mesh_core_upper_bound(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose) -> f64 {
+    let mut best = Best::new(f64::INFINITY, f64::INFINITY, 0.0);
+    best.search_beside(mesh, core, core_in_mesh);
+    best.gap.map_or(f64::INFINITY, |gap| gap.distance)
+}
+
+/// The gaps of triangles and a core, in the mesh's frame.
+trait TriangleGaps {
+    /// Called before the first triangle of each leaf, with the limit of the traversal.
+    fn begin_leaf(&mut self, _leaf: &LeafTriangles<'_>, _limit: f32) {}
+
+    /// The gap of a triangle, which has this lane in its leaf; `None` if it is proven to be above the limit.
+    fn gap(&mut self, lane: usize, triangle: usize, limit: f64) -> Option<Gap>;
+}
+
+impl<F: Fn(usize) -> Gap> TriangleGaps for F {
+    fn gap(&mut self, _: usize, triangle: usize, _: f64) -> Option<Gap> {
+        Some(self(triangle))
     }
 }
 
@@ -93,40 +143,12 @@ pub(super) fn mesh_core(
 ) -> Option<Gap> {
     // The bound in `Gap::separation` decides; this bound must not pass the limit earlier.
     let (limit, sufficient) = (limit + radius + 2.0 * rounding(radius), radius);
-    let t = core_in_mesh.translation;
-    let extent = mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
-    let scale = 3.0 * extent + t.abs().max_element() + core.size();
     let tie_tolerance = match bounding_sphere(core) {
         Some((radius, _)) if goal.is_continuous() => tolerances(mesh, radius).tie,
         _ => 0.0,
     };
     let mut best = Best::new(limit, sufficient, tie_tolerance);
-    let query = BoxDistance::new(&mesh.bvh, &core.aabb(), core_in_mesh);
-    match core {
-        Core::Point => {
-            best.search(mesh, &query, &|i, _| Some(Gap::closed(nearest_on_triangle(t, mesh.corners(i)), t, scale)));
-        }
-        Core::Segment(half) => {
-            let axis = Segment { middle: t, direction: core_in_mesh.rotation.z_axis(), half: *half };
-            let (p, q) = (axis.at(-half), axis.at(*half));
-            best.search(mesh, &query, &|i, _| {
-                let near = segment_triangle(p, q, mesh.corners(i));
-                Some(Gap::closed(near.on_b, near.on_a, scale))
-            });
-        }
-        _ => {
-            let mesh_in_core = core_in_mesh.inverse();
-            best.search(mesh, &query, &|i, limit| {
-                let triangle = Core::Triangle(mesh.corners(i).map(|p| mesh_in_core.transform_point(p)));
-                // The rounding of the transformation back is subtracted from the lower bound below.
-                let limit = limit + 2.0 * rounding(scale);
-                let gap = projections::distance(&triangle, core, &Pose::IDENTITY, limit)?;
-                let back = |p| core_in_mesh.transform_point(p);
-                let lower = (gap.lower - rounding(scale)).max(0.0);
-                Some(Gap { on_a: back(gap.on_a), on_b: back(gap.on_b), lower, ..gap })
-            });
-        }
-    }
+    best.search_beside(mesh, core, core_in_mesh);
     stats.triangles_beside_solids += best.measured;
     // The centre of a hull's bounds may be outside the hull.
     let own = if let Core::Hull(hull) = core { hull.vertices()[0] } else { core.middle() };
@@ -140,6 +162,77 @@ pub(super) fn mesh_core(
         return Some(gap);
     }
     Some(mesh_continuous_witness(mesh, core, core_in_mesh, gap, triangle, spread, stats))
+}
+
+/// Triangles beside a core with faces.
+struct CoreTriangles<'c> {
+    mesh: &'c TriMesh,
+    core: &'c Core<'c>,
+    core_in_mesh: &'c Pose,
+    mesh_in_core: Pose,
+    scale: f64,
+    /// The direction from the core to the last triangle within the limit, which is likely to prove that others are not.
+    toward_mesh: Option<Vec3>,
+    /// The first steps of the triangles of a leaf, if they were made together.
+    together: Option<FirstSteps>,
+}
+
+/// Least number of triangles of a leaf whose first steps are made together.
+const LEAST_TOGETHER: usize = 3;
+
+impl<'c> CoreTriangles<'c> {
+    fn new(mesh: &'c TriMesh, core: &'c Core<'c>, core_in_mesh: &'c Pose, scale: f64) -> Self {
+        let mesh_in_core = core_in_mesh.inverse();
+        Self { mesh, core, core_in_mesh, mesh_in_core, scale, toward_mesh: None, together: None }
+    }
+
+    /// The corners of a triangle in the core's frame.
+    fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.mesh.corners(triangle).map(|p| self.mesh_in_core.transform_point(p))
+    }
+
+    /// The gap of a triangle in the core's frame.
+    fn gap_of_one(&self, triangle: usize, limit: f64) -> Option<Gap> {
+        let corners = self.corners(triangle);
+        let support_gap = |d: Vec3| {
+            let [p, q, r] = corners.map(|corner| corner.dot(d));
+            p.min(q).min(r) - self.core.reach(d) - rounding(self.scale)
+        };
+        if self.toward_mesh.is_some_and(|d| support_gap(d) > limit) {
+            return None;
+        }
+        projections::distance(&Core::Triangle(corners), self.core, &Pose::IDENTITY, limit)
+    }
+}
+
+impl TriangleGaps for CoreTriangles<'_> {
+    fn begin_leaf(&mut self, leaf: &LeafTriangles<'_>, limit: f32) {
+        self.together = None;
+        let Core::Cuboid(solid) = self.core else { return };
+        if leaf.within(limit).count() < LEAST_TOGETHER {
+            return;
+        }
+        let mut lanes = TriangleLanes::ZERO;
+        for (lane, triangle) in leaf.within(limit) {
+            lanes.set(lane, &self.corners(triangle));
+        }
+        self.together = Some(FirstSteps::of(&lanes, solid));
+    }
+
+    fn gap(&mut self, lane: usize, triangle: usize, limit: f64) -> Option<Gap> {
+        // The rounding of the transformation back is subtracted from the lower bound below.
+        let limit = limit + 2.0 * rounding(self.scale);
+        let first = self.together.as_ref().map_or(FirstStep::Open, |steps| steps.answer(lane, limit));
+        let gap = match first {
+            FirstStep::Farther => return None,
+            FirstStep::Measured(gap) => gap,
+            FirstStep::Open => self.gap_of_one(triangle, limit)?,
+        };
+        self.toward_mesh = (gap.on_a - gap.on_b).try_normalize();
+        let back = |p| self.core_in_mesh.transform_point(p);
+        let lower = (gap.lower - rounding(self.scale)).max(0.0);
+        Some(Gap { on_a: back(gap.on_a), on_b: back(gap.on_b), lower, ..gap })
+    }
 }
 
 /// The gap from the mesh's lowest point over a half-space, in the half-space's frame.

@@ -5,6 +5,7 @@ use elbowroom_spatial::Pose;
 use super::capsule::capsule;
 use super::convex::rounded_convex;
 use super::core::rounded;
+use super::gap::rounding;
 use super::goal::Goal;
 use super::pair_order::comes_first;
 use super::result::Separation;
@@ -123,9 +124,9 @@ impl Workspace {
         dispatch_meshes(a, a_in_world, b, b_in_world, tolerance, Goal::WithinLimit, options).is_some()
     }
 
-    /// An upper bound of the distance of two meshes, metres, at a small fraction of the cost of the distance
-    /// ([`distance_upper_bound`](crate::advanced::distance_upper_bound)). `None` if a shape is not a mesh or a pose is
-    /// not finite. `warm_start` as in [`DistanceSettings`].
+    /// An upper bound of the distance of two shapes, metres, at a small fraction of the cost of the distance: of two meshes
+    /// as [`distance_upper_bound`](crate::advanced::distance_upper_bound), of a mesh and another bounded shape that of one
+    /// triangle. `None` for other pairs, or if a pose is not finite. `warm_start` as in [`DistanceSettings`].
     pub fn distance_upper_bound(
         &mut self,
         a: &Shape,
@@ -134,10 +135,22 @@ impl Workspace {
         b_in_world: &Pose,
         warm_start: &mut WarmStart,
     ) -> Option<f64> {
-        let (Shape::Mesh(a), Shape::Mesh(b)) = (a, b) else { return None };
-        let bound = distance_upper_bound(a, a_in_world, b, b_in_world, warm_start, self);
+        let bound = match (a, b) {
+            (Shape::Mesh(a), Shape::Mesh(b)) => distance_upper_bound(a, a_in_world, b, b_in_world, warm_start, self),
+            _ if !(a.is_usable(a_in_world) && b.is_usable(b_in_world)) => return None,
+            (Shape::Mesh(mesh), solid) => upper_bound_beside(mesh, solid, &a_in_world.inverse_mul(b_in_world))?,
+            (solid, Shape::Mesh(mesh)) => upper_bound_beside(mesh, solid, &b_in_world.inverse_mul(a_in_world))?,
+            _ => return None,
+        };
         (bound < f64::INFINITY).then_some(bound)
     }
+}
+
+/// An upper bound of the distance of a mesh and a bounded convex shape in its frame.
+fn upper_bound_beside(mesh: &TriMesh, solid: &Shape, in_mesh: &Pose) -> Option<f64> {
+    let (core, radius) = rounded(solid)?;
+    let gap = mesh_convex::mesh_core_upper_bound(mesh, &core, in_mesh);
+    Some((gap - radius).max(0.0) + rounding(radius))
 }
 
 /// Options that only queries on two meshes use.
