@@ -159,6 +159,14 @@ impl NarrowPhase {
             let settings = distance_settings(limit, &mut warm_start.mesh);
             let found = self.workspace.separation(&x.shape, &x_in_world, &y.shape, &y_in_world, settings);
             self.count_mesh_query(x, y);
+            let are_meshes = matches!((&x.shape, &y.shape), (Shape::Mesh(_), Shape::Mesh(_)));
+            if !(are_meshes && found.is_some_and(|s| s.distance == 0.0)) {
+                return found;
+            }
+            // Where meshes overlap, the point must not depend on earlier queries, nor on the limit that they left.
+            let settings = DistanceSettings::default();
+            let found = self.workspace.separation(&x.shape, &x_in_world, &y.shape, &y_in_world, settings);
+            self.count_mesh_query(x, y);
             return found;
         }
         // The nearest pair of shapes of the last query gives a limit for the other pairs.

@@ -15,15 +15,15 @@ impl CheckerCore<'_> {
         self.upper_bound = f64::INFINITY;
         let mut best: Option<PairDistance> = None;
         // The nearest pair of the last query is likely to be nearest again, and gives a limit for the other pairs.
-        let mut last = list.nearest.filter(|_| self.options.level != Level::L1);
-        if let Some(index) = last {
-            if self.tighten_upper_bound(list, index, state) {
-                last = None;
-            } else {
-                self.measure(list, index, state, &mut best);
-            }
+        let last = list.nearest.filter(|_| self.options.level != Level::L1);
+        let is_bounded = last.is_some_and(|index| self.tighten_upper_bound(list, index, state));
+        let measured = last.filter(|_| !is_bounded);
+        if let Some(index) = measured {
+            self.measure(list, index, state, &mut best, false);
         }
-        self.broad_phase_by_gap(list, state, &mut best, last);
+        // Among equally near pairs it stays the nearest, unless it is one of two meshes.
+        let mut wins_ties = last.filter(|index| is_bounded && !self.are_meshes(list, *index));
+        self.broad_phase_by_gap(list, state, &mut best, measured);
         self.sort_candidates();
         for i in 0..self.candidates.len().min(UPPER_BOUNDS) {
             self.tighten_upper_bound(list, self.candidates[i].index as usize, state);
@@ -34,7 +34,12 @@ impl CheckerCore<'_> {
                 self.narrow.stats.pairs_cleared.l2 += (self.candidates.len() - i) as u64;
                 break;
             }
-            self.measure(list, index as usize, state, &mut best);
+            let index = index as usize;
+            let wins = wins_ties.take_if(|last| *last == index).is_some();
+            self.measure(list, index, state, &mut best, wins);
+        }
+        if let Some(index) = wins_ties.filter(|last| self.may_tie(*last, best.as_ref())) {
+            self.measure(list, index, state, &mut best, true);
         }
         self.answered();
         best
@@ -43,6 +48,18 @@ impl CheckerCore<'_> {
     /// True if a pair that is at least this far apart cannot be the nearest.
     pub(super) fn exceeds_best(&self, metres: f64, best: Option<&PairDistance>) -> bool {
         metres > self.upper_bound || best.is_some_and(|b| metres >= b.metres)
+    }
+
+    /// True if a candidate may be as near as the nearest pair.
+    fn may_tie(&self, index: usize, best: Option<&PairDistance>) -> bool {
+        let candidate = self.candidates.iter().find(|candidate| candidate.index as usize == index);
+        candidate.is_some_and(|c| c.key <= self.upper_bound && best.is_none_or(|b| c.key <= b.metres))
+    }
+
+    /// True for a pair of two meshes.
+    fn are_meshes(&self, list: &PairList, index: usize) -> bool {
+        let pair = &list.pairs[index];
+        [pair.a, pair.b].iter().all(|model| self.scene.models[*model as usize].is_mesh())
     }
 
     /// Tightens the upper bound by the bound of one pair; false if computing that bound is not cheap.
@@ -80,8 +97,16 @@ impl CheckerCore<'_> {
         }
     }
 
-    /// Measures one pair, with the best distance so far as the limit.
-    fn measure(&mut self, list: &mut PairList, index: usize, state: &SceneState, best: &mut Option<PairDistance>) {
+    /// Measures one pair, with the best distance so far as the limit. `wins_ties`: it is the nearest one also if it is as
+    /// near as the best one.
+    fn measure(
+        &mut self,
+        list: &mut PairList,
+        index: usize,
+        state: &SceneState,
+        best: &mut Option<PairDistance>,
+        wins_ties: bool,
+    ) {
         let pair = &mut list.pairs[index];
         let sides = self.sides(pair, state);
         let level = self.options.pair_level();
@@ -89,7 +114,7 @@ impl CheckerCore<'_> {
         let limit = best.map_or(self.upper_bound, |b| b.metres.min(self.upper_bound)) + margin;
         let Some(found) = self.pair_distance(pair, &sides, state, margin, limit) else { return };
         let lower_bound = best.map_or(found.lower_bound, |b| b.lower_bound.min(found.lower_bound));
-        if best.is_none_or(|b| found.metres < b.metres) {
+        if best.is_none_or(|b| found.metres < b.metres || wins_ties && found.metres <= b.metres) {
             list.nearest = Some(index);
             *best = Some(PairDistance { lower_bound, ..found });
         } else if let Some(best) = best {
