@@ -35,7 +35,7 @@ mod model;
 mod obstacles;
 mod validity;
 
-pub use check::{NotCertain, ValidityChecker};
+pub use check::{EDGES_AT_ONCE, NotCertain, ValidityChecker};
 pub use cover::{Ball, SphereCover};
 pub use cover_source::{BuiltCovers, CoverSource, covers, describe_cover};
 pub use error::ValidityError;

@@ -9,7 +9,8 @@ use fearless_simd::Level as SimdLevel;
 /// Expected hash. It changes if an answer changes: only on purpose, with the covers or the division of edges.
 const EXPECTED: u64 = 0xd0e2_e60b_a8bb_4f3d;
 
-fn simd_levels() -> Vec<SimdLevel> {
+/// The instruction sets of this processor.
+pub fn simd_levels() -> Vec<SimdLevel> {
     let mut levels = vec![SimdLevel::new()];
     #[cfg(target_arch = "x86_64")]
     {

@@ -7,3 +7,4 @@ mod covers;
 mod extreme_values;
 mod instruction_sets;
 mod point_clouds;
+mod several_edges;

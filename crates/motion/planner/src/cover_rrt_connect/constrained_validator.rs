@@ -14,6 +14,14 @@ impl MotionValidator for ConstrainedValidator<'_, '_> {
         self.covers.motion_is_free(from, to) && self.exact.validator.constraint_allows(from, to)
     }
 
+    fn motions_at_once(&self) -> usize {
+        self.covers.motions_at_once()
+    }
+
+    fn failing_motions(&mut self, motions: &[(&[f64], &[f64])]) -> u32 {
+        self.covers.failing_motions(motions)
+    }
+
     fn is_exhausted(&mut self) -> bool {
         self.covers.is_exhausted()
     }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use elbowroom_robot::RobotId;
 use elbowroom_scene::{SweepMove, SweepOptions};
-use elbowroom_validity::{NotCertain, Validity, ValidityChecker};
+use elbowroom_validity::{EDGES_AT_ONCE, NotCertain, Validity, ValidityChecker};
 
 use super::cover_model::{CoverModel, CoverObstacles};
 use super::disconnection_proof::{Projection, are_disconnected};
@@ -109,6 +109,14 @@ impl<'m> CoverValidator<'m> {
 impl MotionValidator for CoverValidator<'_> {
     fn motion_is_free(&mut self, from: &[f64], to: &[f64]) -> bool {
         self.checker.edge_is_free(from, to).unwrap_or(false)
+    }
+
+    fn motions_at_once(&self) -> usize {
+        EDGES_AT_ONCE
+    }
+
+    fn failing_motions(&mut self, motions: &[(&[f64], &[f64])]) -> u32 {
+        self.checker.edges_in_obstacles(motions).unwrap_or(0)
     }
 
     fn is_exhausted(&mut self) -> bool {

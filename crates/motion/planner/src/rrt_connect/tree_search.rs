@@ -1,14 +1,26 @@
 //! RRT-Connect (Kuffner, `LaValle`: *RRT-Connect: an efficient approach to single-query path planning*, 2000) with a dynamic
 //! domain (Yershova, Jaillet, Siméon, `LaValle`: *Dynamic-domain RRTs*, 2005): a node from which an extension failed is extended
-//! only towards nearby samples. Proofs are lazy: edges of a path are proven when the trees meet; an edge that cannot be
-//! proven is pruned with its subtree, and the search continues.
+//! only towards nearby samples. Its domain adapts, as in Jaillet, Yershova, `LaValle`, Siméon: *Adaptive tuning of the sampling
+//! domain for dynamic-domain RRTs*, 2005; but it grows with each sample that it keeps out, not with successes.
+//!
+//! Proofs are lazy: edges of a path are proven when the trees meet; an edge that cannot be proven is pruned with its subtree,
+//! and the search continues.
 
 use super::motion_validator::MotionValidator;
 use super::tree::Tree;
 use crate::interpolation::{length, lerp};
 
-/// Dynamic domain of a node after its first failure, rad (and m).
-const DOMAIN_RADIUS: f64 = 4.0;
+/// Dynamic domain of a node after a failure, rad (and m).
+const DOMAIN_RADIUS: f32 = 4.0;
+/// Factor of a domain for each sample beyond it: where most samples are far away, as for robots with many joints that turn
+/// without end, the domain grows until enough of them are tried.
+const DOMAIN_GROWTH: f32 = 1.001;
+
+/// Number of failed extensions in a row from which several are tried at once: where most fail, a test that only rejects
+/// pays; elsewhere the first one is likely to succeed.
+const FAILURES: usize = 4;
+/// Largest number of samples that are drawn for one round of extensions.
+const SAMPLES: usize = 64;
 
 /// Smallest gain of a step of a connection, as a fraction of the distance to its target; a step with less gain is the
 /// last.
@@ -18,6 +30,13 @@ pub(crate) const LEAST_PROGRESS: f64 = 0.05;
 pub(crate) trait ConfigurationSampler {
     /// A configuration for a tree to grow towards; one of its roots is `root`.
     fn sample(&mut self, root: &[f64], out: &mut [f64]);
+}
+
+/// An edge by which a tree may grow.
+struct Extension {
+    /// The node that it begins at.
+    near: usize,
+    end: Vec<f64>,
 }
 
 /// Two trees that grow towards each other.
@@ -43,45 +62,89 @@ impl<'v, V: MotionValidator> TreeSearch<'v, V> {
     /// Searches for a path. Returns its waypoints; `None` if a limit is reached.
     pub fn run(&mut self, sampler: &mut impl ConfigurationSampler) -> Option<Vec<Vec<f64>>> {
         let mut sample = self.trees[0].q(0).to_vec();
-        let mut round = 0;
+        let mut extensions = Vec::new();
+        let (mut round, mut failures) = (0, 0);
         while !self.validator.is_exhausted() {
             if self.trees[0].len() > self.trees[1].len() {
                 self.trees.swap(0, 1);
                 self.is_swapped = !self.is_swapped;
             }
-            sampler.sample(self.trees[0].q(round % self.trees[0].roots()), &mut sample);
-            round += 1;
-            let (near, distance) = self.trees[0].nearest(&sample);
-            if distance == 0.0 || f64::from(self.trees[0].radii[near]) < distance {
-                continue;
+            let count = if failures < FAILURES { 1 } else { self.validator.motions_at_once() };
+            extensions.clear();
+            for _ in 0..SAMPLES {
+                sampler.sample(self.trees[0].q(round % self.trees[0].roots()), &mut sample);
+                round += 1;
+                extensions.extend(self.extension(&sample));
+                if extensions.len() == count {
+                    break;
+                }
             }
-            let Some(node) = self.extend(0, near, &sample, distance) else { continue };
-            if let Some(other) = self.connect(node)
-                && self.is_proven(node, other)
-            {
-                return Some(self.path(node, other));
+            let failing = self.failing(&extensions);
+            for (index, extension) in extensions.drain(..).enumerate() {
+                failures += 1;
+                if failing >> index & 1 == 1 {
+                    self.shrink_domain(0, extension.near);
+                    continue;
+                }
+                let Some(node) = self.extend(0, extension) else { continue };
+                failures = 0;
+                if let Some(other) = self.connect(node)
+                    && self.is_proven(node, other)
+                {
+                    return Some(self.path(node, other));
+                }
+                break;
             }
         }
         None
     }
 
-    /// Adds one edge towards a target. Returns the new node.
-    fn extend(&mut self, tree: usize, near: usize, target: &[f64], distance: f64) -> Option<usize> {
-        let mut next = target.to_vec();
-        let from = &self.trees[tree];
-        let longest = self.validator.longest_edge();
-        if distance > longest {
-            lerp(from.q(near), target, longest / distance, &mut next);
-        }
-        if !self.validator.project(&mut next) || !self.validator.motion_is_free(from.q(near), &next) {
-            let radius = &mut self.trees[tree].radii[near];
-            *radius = radius.min(DOMAIN_RADIUS as f32) * 0.999_9;
-            if !radius.is_finite() {
-                *radius = DOMAIN_RADIUS as f32;
-            }
+    /// The extension of the first tree towards a sample, if that is in the domain of its nearest node.
+    fn extension(&mut self, sample: &[f64]) -> Option<Extension> {
+        let (near, distance) = self.trees[0].nearest(sample);
+        if f64::from(self.trees[0].radii[near]) < distance {
+            self.trees[0].radii[near] *= DOMAIN_GROWTH;
             return None;
         }
-        Some(self.trees[tree].add(near, &next))
+        if distance > 0.0 { self.step(0, near, sample, distance) } else { None }
+    }
+
+    /// Which of several extensions certainly fail, if there are several: one bit each.
+    fn failing(&mut self, extensions: &[Extension]) -> u32 {
+        if extensions.len() < 2 {
+            return 0;
+        }
+        let motions: Vec<_> = extensions.iter().map(|e| (self.trees[0].q(e.near), &e.end[..])).collect();
+        self.validator.failing_motions(&motions)
+    }
+
+    /// The extension of a node towards a target; `None` if its end cannot satisfy the constraint.
+    fn step(&mut self, tree: usize, near: usize, target: &[f64], distance: f64) -> Option<Extension> {
+        let mut end = target.to_vec();
+        let longest = self.validator.longest_edge();
+        if distance > longest {
+            lerp(self.trees[tree].q(near), target, longest / distance, &mut end);
+        }
+        if !self.validator.project(&mut end) {
+            self.shrink_domain(tree, near);
+            return None;
+        }
+        Some(Extension { near, end })
+    }
+
+    /// Adds an edge, if its motion is free. Returns the new node.
+    fn extend(&mut self, tree: usize, Extension { near, end }: Extension) -> Option<usize> {
+        if !self.validator.motion_is_free(self.trees[tree].q(near), &end) {
+            self.shrink_domain(tree, near);
+            return None;
+        }
+        Some(self.trees[tree].add(near, &end))
+    }
+
+    /// Makes the domain of a node smaller after a failed extension.
+    fn shrink_domain(&mut self, tree: usize, node: usize) {
+        let radius = &mut self.trees[tree].radii[node];
+        *radius = radius.min(DOMAIN_RADIUS) * 0.999_9;
     }
 
     /// Grows the second tree straight to a node of the first. Returns the node that reaches it.
@@ -89,7 +152,8 @@ impl<'v, V: MotionValidator> TreeSearch<'v, V> {
         let target = self.trees[0].q(node).to_vec();
         let (mut near, mut distance) = self.trees[1].nearest(&target);
         while distance > 0.0 && !self.validator.is_exhausted() {
-            near = self.extend(1, near, &target, distance)?;
+            let extension = self.step(1, near, &target, distance)?;
+            near = self.extend(1, extension)?;
             let left = length(self.trees[1].q(near), &target);
             // A projection may lead elsewhere.
             if left > distance * (1.0 - LEAST_PROGRESS) {

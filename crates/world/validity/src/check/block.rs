@@ -2,6 +2,7 @@
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
+mod root_touches;
 mod self_collision;
 
 use fearless_simd::{Simd, f32x16, prelude::*};
@@ -65,6 +66,13 @@ impl BlockModel<'_> {
 }
 
 impl BlockModel<'_> {
+    /// Whether a body and a solid of an obstacle are not checked.
+    #[inline(always)]
+    fn is_skipped(&self, body: usize, solid: u32) -> bool {
+        let source = self.obstacles.outer_source[solid as usize] as usize;
+        !self.skipped.is_empty() && self.skipped[body * self.obstacles.len() + source]
+    }
+
     /// Lanes in which two links may be at most their margin plus `more_m` apart.
     #[inline(always)]
     pub fn check_pair<S: Simd>(
@@ -183,9 +191,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         self.model.tree.around(self.simd, centre, node.radius + half_chord, &mut self.workspace.open, &mut found);
         let mut is_touching = false;
         for &obstacle in &found {
-            let source = self.model.obstacles.outer_source[obstacle as usize];
-            let skipped = self.model.skipped;
-            if !skipped.is_empty() && skipped[body * self.model.obstacles.len() + source as usize] {
+            if self.model.is_skipped(body, obstacle) {
                 continue;
             }
             if self.node_touches(NodeObstacle { body: body as u32, node: root, obstacle }, open) {
@@ -241,11 +247,10 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         let mut found = std::mem::take(&mut self.workspace.found);
         self.model.tree.around(self.simd, centre, node.radius + half_chord, &mut self.workspace.open, &mut found);
         for &obstacle in &found {
-            let source = self.model.obstacles.outer_source[obstacle as usize];
-            let skipped = self.model.skipped;
-            if !skipped.is_empty() && skipped[body * self.model.obstacles.len() + source as usize] {
+            if self.model.is_skipped(body, obstacle) {
                 continue;
             }
+            let source = self.model.obstacles.outer_source[obstacle as usize];
             let open = self.request.active & !self.workspace.settled(body, source);
             if open == 0 {
                 continue;

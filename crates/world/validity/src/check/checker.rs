@@ -52,18 +52,18 @@ pub enum NotCertain {
 #[derive(Debug, Clone)]
 pub struct ValidityChecker<'m> {
     pub(super) robot: &'m CoveredRobot,
-    obstacles: &'m ObstacleSet,
-    outer: BroadPhase,
+    pub(super) obstacles: &'m ObstacleSet,
+    pub(super) outer: BroadPhase,
     inner: BroadPhase,
     /// Per body and obstacle: true if the pair is not checked. Empty if all pairs are checked.
-    skipped: Vec<bool>,
-    motion: MotionTable,
+    pub(super) skipped: Vec<bool>,
+    pub(super) motion: MotionTable,
     pub(super) workspace: Workspace,
     matrix: LinkMatrix,
     single: SingleWorkspace,
     pub(super) pairs: Vec<NearPair>,
-    simd_level: SimdLevel,
-    blocks: u64,
+    pub(super) simd_level: SimdLevel,
+    pub(super) blocks: u64,
 }
 
 /// The part of a checker that kernels read. A macro, so that its workspaces can be written at the same time.
@@ -78,6 +78,7 @@ macro_rules! block_model {
         }
     };
 }
+pub(super) use block_model;
 
 impl<'m> ValidityChecker<'m> {
     /// Creates a checker of a robot among obstacles.
@@ -208,7 +209,7 @@ impl<'m> ValidityChecker<'m> {
         found.extend(self.robot.pairs.iter().map(|p| NotCertain::Links(p.a, p.b)));
     }
 
-    fn expect_count(&self, q: &[f64]) -> Result<(), ValidityError> {
+    pub(super) fn expect_count(&self, q: &[f64]) -> Result<(), ValidityError> {
         let expected = self.robot.dof();
         if q.len() == expected { Ok(()) } else { Err(ValidityError::WrongCount { found: q.len(), expected }) }
     }

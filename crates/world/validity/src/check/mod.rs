@@ -12,6 +12,7 @@ mod motion_tests;
 mod pair_table_builder;
 mod placed_centres;
 mod segment;
+mod several_edges;
 mod single;
 #[cfg(test)]
 mod single_tests;
@@ -19,3 +20,4 @@ mod single_workspace;
 mod workspace;
 
 pub use checker::{NotCertain, ValidityChecker};
+pub use several_edges::EDGES_AT_ONCE;

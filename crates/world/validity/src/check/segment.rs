@@ -103,6 +103,20 @@ impl Workspace {
         (half_chord, (sag * ROUNDED_UP - common).max(0.0))
     }
 
+    /// Puts evenly spaced configurations of the prepared stretch into some lanes, the last one at its end.
+    pub fn put_stretch(&mut self, first: usize, count: usize) {
+        for (values, joint) in self.values.iter_mut().zip(&self.stretch) {
+            for (k, value) in values.0[first..first + count].iter_mut().enumerate() {
+                *value = joint.first + joint.change * ((k + 1) as f32 / count as f32);
+            }
+        }
+    }
+
+    /// Puts 0 into some lanes.
+    pub fn clear_lanes(&mut self, first: usize, count: usize) {
+        self.values.iter_mut().for_each(|values| values.0[first..first + count].fill(0.0));
+    }
+
     /// Sets the joint values of one lane. False if the bounds do not hold for them.
     pub fn set_lane(&mut self, robot: &CoveredRobot, lane: usize, q: &[f64]) -> bool {
         let mut is_valid = true;
