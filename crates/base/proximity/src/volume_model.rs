@@ -1,6 +1,7 @@
 //! The kind of enclosing volume that replaces a solid.
 
 use elbowroom_spatial::Pose;
+use rayon::prelude::*;
 
 use crate::{Shape, fit};
 
@@ -24,6 +25,18 @@ impl VolumeModel {
     /// The volume of a tool, a load or an object: primitives unchanged, a mesh as by [`VolumeModel::of`].
     pub fn of_solid(self, shape: &Shape, in_frame: Pose) -> (Shape, Pose) {
         if matches!(shape, Shape::Mesh(_)) { self.of(shape, in_frame) } else { (shape.clone(), in_frame) }
+    }
+
+    /// The volumes of several solids, fitted on all cores.
+    ///
+    /// ```
+    /// use elbowroom_proximity::{Shape, Sphere, VolumeModel};
+    /// use elbowroom_spatial::Pose;
+    /// let ball = Shape::Sphere(Sphere { radius: 0.1 });
+    /// assert_eq!(VolumeModel::Tightest.of_all(&[(&ball, Pose::IDENTITY)])[0].0, ball);
+    /// ```
+    pub fn of_all(self, solids: &[(&Shape, Pose)]) -> Vec<(Shape, Pose)> {
+        solids.par_iter().with_max_len(1).map(|(shape, in_frame)| self.of(shape, *in_frame)).collect()
     }
 
     /// The volume of one solid. With every model, it encloses the solid.

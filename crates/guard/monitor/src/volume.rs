@@ -113,16 +113,12 @@ impl Volume {
 /// The volumes of all links that joints move. Solids fixed to the root link do not move and get no volume.
 pub fn arm_volumes(robot: &Robot, model: VolumeModel) -> Vec<Volume> {
     let chain = &robot.chain;
-    let volume = |link: usize, collider: &Collider| {
-        let (shape, in_link) = model.of(&collider.shape, collider.in_link);
+    let links = robot.colliders.iter().enumerate().filter(|(link, _)| chain.is_movable(LinkId(*link)));
+    let colliders: Vec<_> = links.flat_map(|(link, colliders)| colliders.iter().map(move |c| (link, c))).collect();
+    let solids: Vec<_> = colliders.iter().map(|(_, collider)| (&collider.shape, collider.in_link)).collect();
+    let volume = |((link, _), (shape, in_link)): ((usize, &Collider), (Shape, Pose))| {
         let (name, presence) = (chain.links()[link].clone(), Presence::Always);
         Volume { name, part: Part::Arm, link: LinkId(link), shape, in_link, presence }
     };
-    robot
-        .colliders
-        .iter()
-        .enumerate()
-        .filter(|(link, _)| chain.is_movable(LinkId(*link)))
-        .flat_map(|(link, colliders)| colliders.iter().map(move |collider| volume(link, collider)))
-        .collect()
+    colliders.into_iter().zip(model.of_all(&solids)).map(volume).collect()
 }

@@ -11,8 +11,9 @@ use elbowroom_kinematics::{JointId, JointKind};
 use elbowroom_proximity::{Shape, Sphere, separation_within};
 use elbowroom_robot::{GeometryId, RobotId};
 use elbowroom_spatial::{Pose, Vec3};
+use rayon::prelude::*;
 
-use super::entry::PairState;
+use super::entry::{PairEntry, PairState};
 use super::matrix::AllowedCollisionMatrix;
 use super::reason::Reason;
 use crate::local_shape::LocalShape;
@@ -28,15 +29,18 @@ const MAX_CELLS: usize = 4000;
 
 /// Marks the pairs that are proven to be out of reach.
 pub(crate) fn prove_out_of_reach(scene: &Scene, mut matrix: AllowedCollisionMatrix) -> AllowedCollisionMatrix {
-    let mut search = BranchAndBound { scene, state: SceneState::new(scene), narrow: NarrowPhase::new(scene) };
-    for entry in matrix.entries_mut().iter_mut().filter(|e| e.state == PairState::Tested) {
+    let start = SceneState::new(scene);
+    let prove = |narrow: &mut NarrowPhase, entry: &mut PairEntry| {
         let required = entry.margin_m + CLEARANCE;
-        let least = by_reach_spheres(scene, entry.a, entry.b, required)
-            .or_else(|| search.least_distance(entry.a, entry.b, required));
-        if let Some(least_m) = least {
+        // Each pair begins at the same state, so that no proof depends on those before.
+        let search =
+            || BranchAndBound { scene, state: start.clone(), narrow }.least_distance(entry.a, entry.b, required);
+        if let Some(least_m) = by_reach_spheres(scene, entry.a, entry.b, required).or_else(search) {
             (entry.state, entry.reason) = (PairState::Skipped, Reason::OutOfReach { least_m });
         }
-    }
+    };
+    let entries = matrix.entries_mut().par_iter_mut().with_max_len(1);
+    entries.filter(|e| e.state == PairState::Tested).for_each_init(|| NarrowPhase::new(scene), prove);
     matrix
 }
 
@@ -132,13 +136,13 @@ struct JointCell {
     half_width: [f64; MAX_JOINTS],
 }
 
-struct BranchAndBound<'s> {
+struct BranchAndBound<'s, 'n> {
     scene: &'s Scene,
     state: SceneState,
-    narrow: NarrowPhase,
+    narrow: &'n mut NarrowPhase,
 }
 
-impl BranchAndBound<'_> {
+impl BranchAndBound<'_, '_> {
     /// Returns `required` (m) if the pair is proven to be that far apart in every cell.
     fn least_distance(&mut self, a: GeometryId, b: GeometryId, required: f64) -> Option<f64> {
         let models = [self.scene.model_of(a)?, self.scene.model_of(b)?];
@@ -157,11 +161,11 @@ impl BranchAndBound<'_> {
                 narrow.separated_coarsely(&x, &y, limit).is_some() || !narrow.within(&x, &y, Level::L3, limit)
             };
             let at_boundary = required + moves.iter().sum::<f64>() * (1.0 + 1e-9);
-            if clear(&mut self.narrow, at_boundary) {
+            if clear(self.narrow, at_boundary) {
                 continue;
             }
             // A cell that contains this point cannot be proven clear.
-            if !clear(&mut self.narrow, required) {
+            if !clear(self.narrow, required) {
                 return None;
             }
             let widest = (0..joints.len()).max_by(|i, j| moves[*i].total_cmp(&moves[*j]))?;
