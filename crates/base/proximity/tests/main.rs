@@ -21,4 +21,5 @@ mod separation;
 mod shapes;
 mod slivers;
 mod triangle_contacts;
+mod upper_bound;
 mod weld;

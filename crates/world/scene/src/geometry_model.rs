@@ -39,11 +39,6 @@ pub(crate) struct GeometryModel {
 const HULL_TOLERANCE: f64 = 1e-12;
 
 impl GeometryModel {
-    /// True for a single mesh.
-    pub fn is_mesh(&self) -> bool {
-        matches!(self.exact[..], [LocalShape { shape: Shape::Mesh(_), .. }])
-    }
-
     pub fn new(id: GeometryId, exact: Vec<LocalShape>, padding_m: f64) -> Self {
         let complex = exact.len() > 1 || exact.iter().any(|s| matches!(s.shape, Shape::Mesh(_) | Shape::Hull(_)));
         let unbounded = exact.iter().any(|s| matches!(s.shape, Shape::HalfSpace(_)));
@@ -69,6 +64,11 @@ impl GeometryModel {
             padding_m,
             hull_slack_m,
         }
+    }
+
+    /// True for a single mesh.
+    pub fn is_mesh(&self) -> bool {
+        matches!(self.exact[..], [LocalShape { shape: Shape::Mesh(_), .. }])
     }
 
     /// Length (m) by which the models of a level may fail to enclose the geometry.

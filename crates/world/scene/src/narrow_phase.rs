@@ -157,16 +157,12 @@ impl NarrowPhase {
         if let ([x], [y]) = (of_a, of_b) {
             let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
             let settings = distance_settings(limit, &mut warm_start.mesh);
-            let found = self.workspace.separation(&x.shape, &x_in_world, &y.shape, &y_in_world, settings);
-            self.count_mesh_query(x, y);
+            let found = self.shape_separation((x, &x_in_world), (y, &y_in_world), settings);
             let are_meshes = matches!((&x.shape, &y.shape), (Shape::Mesh(_), Shape::Mesh(_)));
-            if !(are_meshes && found.is_some_and(|s| s.distance == 0.0)) {
-                return found;
+            if are_meshes && found.is_some_and(|s| s.distance == 0.0) {
+                // The point of overlapping meshes must not depend on earlier queries, nor on the limit that they left.
+                return self.shape_separation((x, &x_in_world), (y, &y_in_world), DistanceSettings::default());
             }
-            // Where meshes overlap, the point must not depend on earlier queries, nor on the limit that they left.
-            let settings = DistanceSettings::default();
-            let found = self.workspace.separation(&x.shape, &x_in_world, &y.shape, &y_in_world, settings);
-            self.count_mesh_query(x, y);
             return found;
         }
         // The nearest pair of shapes of the last query gives a limit for the other pairs.
@@ -174,8 +170,7 @@ impl NarrowPhase {
         if let (Some(x), Some(y)) = (of_a.get(first.0), of_b.get(first.1)) {
             let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
             let settings = distance_settings(limit, &mut warm_start.mesh);
-            best = self.workspace.separation(&x.shape, &x_in_world, &y.shape, &y_in_world, settings);
-            self.count_mesh_query(x, y);
+            best = self.shape_separation((x, &x_in_world), (y, &y_in_world), settings);
             limit = best.map_or(limit, |s: Separation| s.distance);
         }
         self.fill_bounds(of_b, &b.in_world);
@@ -188,8 +183,7 @@ impl NarrowPhase {
                 let (x_in_world, y_in_world) = (a.in_world * x.in_geometry, b.in_world * y.in_geometry);
                 let mut mesh = WarmStart::default();
                 let settings = distance_settings(limit, &mut mesh);
-                let found = self.workspace.separation(&x.shape, &x_in_world, &y.shape, &y_in_world, settings);
-                self.count_mesh_query(x, y);
+                let found = self.shape_separation((x, &x_in_world), (y, &y_in_world), settings);
                 let Some(s) = found else { continue };
                 best = Some(nearer(best, s));
                 if best == Some(s) {
@@ -199,6 +193,17 @@ impl NarrowPhase {
             }
         }
         best
+    }
+
+    fn shape_separation(
+        &mut self,
+        (x, x_in_world): (&LocalShape, &Pose),
+        (y, y_in_world): (&LocalShape, &Pose),
+        settings: DistanceSettings,
+    ) -> Option<Separation> {
+        let found = self.workspace.separation(&x.shape, x_in_world, &y.shape, y_in_world, settings);
+        self.count_mesh_query(x, y);
+        found
     }
 
     /// Lower bound (m) on the distance from the meshes' box trees down to a depth, with points of the nearest boxes.

@@ -306,6 +306,51 @@ fn nearest_pairs_followed_along_a_path_stay_the_nearest() {
 }
 
 #[test]
+fn the_point_of_overlapping_meshes_does_not_depend_on_states_before() {
+    let scene = scene_of(15, |_| {});
+    let mut warm = Checker::new(&scene, CheckerOptions::default());
+    let mut r = Random(15);
+    // The links of the first robot are single meshes.
+    let sides = (Selection::Robot(RobotId(0)), Selection::Robot(RobotId(0)));
+    let mut overlapping = 0;
+    for _ in 0..1000 {
+        let state = random_state(&scene, &mut r);
+        let d = warm.between(sides.0, sides.1).distance(&state).unwrap();
+        if d.metres == 0.0 {
+            let mut alone = Checker::new(&scene, CheckerOptions::default());
+            let cold = alone.between(d.a.into(), d.b.into()).distance(&state).unwrap();
+            assert_eq!((d.on_a, d.on_b), (cold.on_a, cold.on_b));
+            overlapping += 1;
+        }
+    }
+    assert!(overlapping > 10, "{overlapping}");
+}
+
+#[test]
+fn a_pair_that_does_not_count_in_this_state_bounds_no_other() {
+    let scene = scene_of(16, |_| {});
+    // Of so few samples most pairs that meet have none in which they do.
+    let mut matrix = scene.allowed_collision_matrix().sampled(&scene, 5);
+    assert!(matrix.accept_suggestions() > 0);
+    let scene = scene.with_allowed_collision_matrix(matrix).unwrap();
+    let mut warm = Checker::new(&scene, CheckerOptions::default());
+    let mut r = Random(16);
+    let chain = &scene.robots()[0].robot.chain;
+    let upper = chain.joints()[chain.active_joints()[0].0].limits.upper;
+    for _ in 0..300 {
+        let mut q = r.q();
+        // Beyond the limits every pair counts.
+        for over in [0.01, -0.01] {
+            q[0] = upper + over;
+            let mut state = SceneState::new(&scene);
+            state.set_q(&scene, RobotId(0), &q).unwrap();
+            let cold = Checker::new(&scene, CheckerOptions::default()).distance(&state);
+            assert_eq!(warm.distance(&state).map(|d| d.metres), cold.map(|d| d.metres));
+        }
+    }
+}
+
+#[test]
 fn links_of_several_shapes_collide_with_a_tilted_half_space() {
     let mut robot = elbowroom_robot::example::arm().unwrap();
     let tip = robot.chain.tip();

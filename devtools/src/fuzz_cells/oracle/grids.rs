@@ -2,7 +2,7 @@
 
 use elbowroom_cell::{Cell, CellGrid, CellRobot};
 use elbowroom_kinematics::JointKind;
-use elbowroom_monitor::{GridSpace, OverrideReason};
+use elbowroom_monitor::{Fault, GridSpace, OverrideReason};
 use elbowroom_sim::Recording;
 use elbowroom_spatial::Vec3;
 
@@ -25,8 +25,7 @@ pub fn check(cell: &Cell, recording: &Recording, arms: &[Arm], findings: &mut Fi
             let number = bits(of_robot, sample.outputs);
             // In the tick of an exchange both tools count.
             let is_exchanged = mounted.changes().any(|change| change == tick);
-            // Without a sensible input, and with a region that moves faster than allowed, outputs stay as they are.
-            let is_held = matches!(sample.reason, OverrideReason::Fault(_)) && number == former;
+            let is_held = holds_outputs(sample.reason) && number == former;
             let is_right = || place.is_right(place.coordinates(&sample.q, &mounted, tick).as_deref(), former, number);
             if !is_exchanged && !is_held && !is_right() {
                 findings.list.push(Finding::WrongCell { robot, t_s: sample.t_s, number });
@@ -35,6 +34,12 @@ pub fn check(cell: &Cell, recording: &Recording, arms: &[Arm], findings: &mut Fi
             former = number;
         }
     }
+}
+
+/// Whether outputs stay as they are, because there is no sensible input or a region moves faster than allowed. A robot that
+/// brakes too little, or whose regions are unknown, is where it is.
+fn holds_outputs(reason: OverrideReason) -> bool {
+    matches!(reason, OverrideReason::Fault(fault) if !matches!(fault, Fault::Braking | Fault::Regions))
 }
 
 /// The number on the outputs of a grid: as many bits as its largest number has.

@@ -10,6 +10,9 @@ use crate::lanes::{
     F32_ERROR, V3, W8, W16, abs16, array8, array16, detected_simd_level, load_corners, load16, narrow, splat8, splat16,
 };
 
+/// Largest extent, units of the tree's frame, whose square is finite in f32.
+const LARGEST_EXTENT: f64 = 1e18;
+
 /// Distance from a box in its own frame.
 pub(crate) struct BoxDistance {
     /// Centre of the box in the mesh's frame.
@@ -32,12 +35,14 @@ impl BoxDistance {
         let axes = [in_mesh.rotation.x_axis(), in_mesh.rotation.y_axis(), in_mesh.rotation.z_axis()];
         let bounding_half = axes[0].abs() * half.x + axes[1].abs() * half.y + axes[2].abs() * half.z;
         let extent = 1.0 + middle.abs().max_element() + half.x + half.y + half.z;
+        // Squares of larger numbers overflow: then nothing is excluded.
+        let error = if extent < LARGEST_EXTENT { extent * F32_ERROR } else { f64::INFINITY };
         Self {
             center: narrow(middle),
             axes: [narrow(axes[0]), narrow(axes[1]), narrow(axes[2])],
             half: narrow(half),
             bounding_half: narrow(bounding_half),
-            error: (extent * F32_ERROR) as f32,
+            error: error as f32,
         }
     }
 
@@ -122,4 +127,46 @@ impl NodeBound for BoxDistance {
 fn axis_gap<S: Simd>(simd: S, c: V3<W16<S>>, h: V3<W16<S>>, axis: [f32; 3], half: f32) -> W16<S> {
     let [x, y, z] = axis;
     c.dot(splat16(simd, axis)).abs() - (h.dot(splat16(simd, [x.abs(), y.abs(), z.abs()])) + half)
+}
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_spatial::Rotation;
+    use elbowroom_testkit::random::Random;
+
+    use super::*;
+    use crate::separation::{core::Core, projections};
+    use crate::{Cuboid, TriMesh};
+
+    #[test]
+    fn no_bound_of_a_triangle_is_above_its_distance() {
+        let mut random = Random(5);
+        for size in [1e-6, 1.0, 1e3] {
+            for _ in 0..40 {
+                let off = Vec3::from(random.within(1.0)) * (size * 10f64.powf(random.between(-2.0, 2.0)));
+                let corners: Vec<Vec3> = (0..60).map(|_| off + Vec3::from(random.within(1.0)) * size).collect();
+                let mesh = TriMesh::new(corners, (0..20).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()).unwrap();
+                let rotation =
+                    Rotation::from_rpy(random.between(-3.0, 3.0), random.between(-1.5, 1.5), random.between(-3.0, 3.0));
+                let in_mesh = Pose::new(rotation, off + Vec3::from(random.within(2.0)) * size);
+                let solid = Cuboid { half_extents: Vec3::from(random.within(1.0)).abs() * size };
+                let bounds = Aabb { min: -solid.half_extents, max: solid.half_extents };
+                let query = BoxDistance::new(&mesh.bvh, &bounds, &in_mesh);
+                for (number, leaf) in mesh.bvh.leaves.iter().enumerate() {
+                    for (lane, bound) in query.leaf_bounds(leaf).into_iter().take(mesh.bvh.leaf_len(number)).enumerate()
+                    {
+                        let triangle = mesh.bvh.triangle((number * LEAF_SIZE + lane) as u32);
+                        let local = mesh.corners(triangle).map(|p| in_mesh.inverse_transform_point(p));
+                        let core = (Core::Triangle(local), Core::Cuboid(solid));
+                        let gap = projections::distance(&core.0, &core.1, &Pose::IDENTITY, f64::INFINITY).unwrap();
+                        let metres = f64::from(bound) * mesh.bvh.frame.unit;
+                        assert!(metres <= gap.distance, "{metres} {gap:?}");
+                        // The bounds of a triangle in the frame of the box are no farther than its corners.
+                        let corner = local.iter().map(|p| p.distance(solid.nearest(*p))).fold(f64::INFINITY, f64::min);
+                        assert!(metres <= corner);
+                    }
+                }
+            }
+        }
+    }
 }

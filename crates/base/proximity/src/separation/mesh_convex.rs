@@ -68,9 +68,7 @@ impl Best {
 
     /// Offers the gaps of all triangles that may be within the limit of a core.
     fn search_beside(&mut self, mesh: &TriMesh, core: &Core, core_in_mesh: &Pose) {
-        let t = core_in_mesh.translation;
-        let extent = mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
-        let scale = 3.0 * extent + t.abs().max_element() + core.size();
+        let (t, scale) = (core_in_mesh.translation, scale(mesh, core, core_in_mesh));
         let query = BoxDistance::new(&mesh.bvh, &core.aabb(), core_in_mesh);
         match core {
             Core::Point => {
@@ -112,7 +110,13 @@ impl Best {
 pub(super) fn mesh_core_upper_bound(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose) -> f64 {
     let mut best = Best::new(f64::INFINITY, f64::INFINITY, 0.0);
     best.search_beside(mesh, core, core_in_mesh);
-    best.gap.map_or(f64::INFINITY, |gap| gap.distance)
+    best.gap.map_or(f64::INFINITY, |gap| gap.distance + rounding(scale(mesh, core, core_in_mesh)))
+}
+
+/// Bound of the coordinates of a mesh and a core in its frame, metres.
+fn scale(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose) -> f64 {
+    let extent = mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
+    3.0 * extent + core_in_mesh.translation.abs().max_element() + core.size()
 }
 
 /// The gaps of triangles and a core, in the mesh's frame.
@@ -170,9 +174,11 @@ struct CoreTriangles<'c> {
     core: &'c Core<'c>,
     core_in_mesh: &'c Pose,
     mesh_in_core: Pose,
+    /// Bound of all coordinates, metres, for their rounding.
     scale: f64,
-    /// The direction from the core to the last triangle within the limit, which is likely to prove that others are not.
-    toward_mesh: Option<Vec3>,
+    /// The direction from the core to the last triangle within the limit, and the core's support plane there: likely to
+    /// prove that other triangles are not.
+    toward_mesh: Option<(Vec3, f64)>,
     /// The first steps of the triangles of a leaf, if they were made together.
     together: Option<FirstSteps>,
 }
@@ -194,12 +200,11 @@ impl<'c> CoreTriangles<'c> {
     /// The gap of a triangle in the core's frame.
     fn gap_of_one(&self, triangle: usize, limit: f64) -> Option<Gap> {
         let corners = self.corners(triangle);
-        let support_gap = |d: Vec3| {
-            let [p, q, r] = corners.map(|corner| corner.dot(d));
-            p.min(q).min(r) - self.core.reach(d) - rounding(self.scale)
-        };
-        if self.toward_mesh.is_some_and(|d| support_gap(d) > limit) {
-            return None;
+        if let Some((direction, reach)) = self.toward_mesh {
+            let [p, q, r] = corners.map(|corner| corner.dot(direction));
+            if p.min(q).min(r) - reach - rounding(self.scale) > limit {
+                return None;
+            }
         }
         projections::distance(&Core::Triangle(corners), self.core, &Pose::IDENTITY, limit)
     }
@@ -212,7 +217,7 @@ impl TriangleGaps for CoreTriangles<'_> {
         if leaf.within(limit).count() < LEAST_TOGETHER {
             return;
         }
-        let mut lanes = TriangleLanes::ZERO;
+        let mut lanes = TriangleLanes::NONE;
         for (lane, triangle) in leaf.within(limit) {
             lanes.set(lane, &self.corners(triangle));
         }
@@ -228,7 +233,7 @@ impl TriangleGaps for CoreTriangles<'_> {
             FirstStep::Measured(gap) => gap,
             FirstStep::Open => self.gap_of_one(triangle, limit)?,
         };
-        self.toward_mesh = (gap.on_a - gap.on_b).try_normalize();
+        self.toward_mesh = (gap.on_a - gap.on_b).try_normalize().map(|d| (d, self.core.reach(d)));
         let back = |p| self.core_in_mesh.transform_point(p);
         let lower = (gap.lower - rounding(self.scale)).max(0.0);
         Some(Gap { on_a: back(gap.on_a), on_b: back(gap.on_b), lower, ..gap })

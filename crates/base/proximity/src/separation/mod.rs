@@ -11,7 +11,7 @@ mod half_space;
 mod mesh_continuous_witness;
 mod mesh_convex;
 mod pair_order;
-mod projections;
+pub(crate) mod projections;
 mod query;
 mod result;
 mod segment;

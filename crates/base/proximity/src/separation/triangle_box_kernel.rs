@@ -11,25 +11,32 @@ use fearless_simd::{Simd, dispatch, f64x8, prelude::*};
 
 use super::gap::{CONVERGED, Gap, rounding};
 use crate::Cuboid;
+use crate::bvh::LEAF_SIZE;
 use crate::lanes::{V3, detected_simd_level};
 use crate::triangle::SLENDER;
 
 /// Number of triangles.
-pub(super) const LANES: usize = 8;
+const LANES: usize = LEAF_SIZE;
 
 type W<S> = f64x8<S>;
 type M<S> = <W<S> as SimdBase<S>>::Mask;
 
-/// Corners of the triangles in the frame of the box: `[corner][axis][lane]`, metres.
+/// Triangles in the frame of the box, metres.
 #[derive(Debug, Clone)]
-pub(super) struct TriangleLanes(pub [[[f64; LANES]; 3]; 3]);
+pub(super) struct TriangleLanes {
+    /// `[corner][axis][lane]`
+    corners: [[[f64; LANES]; 3]; 3],
+    /// One bit per lane that has a triangle.
+    set: u32,
+}
 
 impl TriangleLanes {
-    pub const ZERO: Self = Self([[[0.0; LANES]; 3]; 3]);
+    pub const NONE: Self = Self { corners: [[[0.0; LANES]; 3]; 3], set: 0 };
 
     #[inline]
     pub fn set(&mut self, lane: usize, corners: &[Vec3; 3]) {
-        for (to, p) in self.0.iter_mut().zip(corners) {
+        self.set |= 1 << lane;
+        for (to, p) in self.corners.iter_mut().zip(corners) {
             (to[0][lane], to[1][lane], to[2][lane]) = (p.x, p.y, p.z);
         }
     }
@@ -41,8 +48,12 @@ pub(super) struct FirstSteps {
     distance: [f64; LANES],
     /// Proven lower bounds, metres.
     lower: [f64; LANES],
-    /// Largest difference of the two that is an answer; smallest distance of points that are apart.
-    tolerance: [[f64; LANES]; 2],
+    /// Largest difference of the two that is an answer, metres.
+    converged: [f64; LANES],
+    /// Largest distance at which the points may coincide, metres.
+    touching: [f64; LANES],
+    /// One bit per lane that has a triangle.
+    set: u32,
     on_triangle: [[f64; LANES]; 3],
     on_box: [[f64; LANES]; 3],
 }
@@ -58,7 +69,7 @@ pub(super) enum FirstStep {
 }
 
 impl FirstSteps {
-    /// The first step of every lane; lanes that were not set are undefined.
+    /// The first step of every lane.
     pub fn of(triangles: &TriangleLanes, solid: &Cuboid) -> Self {
         dispatch!(detected_simd_level(), simd => first_steps(simd, triangles, solid))
     }
@@ -66,17 +77,19 @@ impl FirstSteps {
     /// The answer for one lane.
     #[inline]
     pub fn answer(&self, lane: usize, limit: f64) -> FirstStep {
+        if self.set >> lane & 1 == 0 {
+            return FirstStep::Open;
+        }
         let at = |p: &[[f64; LANES]; 3]| Vec3::new(p[0][lane], p[1][lane], p[2][lane]);
         let (distance, lower) = (self.distance[lane], self.lower[lane]);
-        let [converged, apart] = [self.tolerance[0][lane], self.tolerance[1][lane]];
-        if !(distance > apart) {
+        if !(distance > self.touching[lane]) {
             return FirstStep::Measured(Gap::touching(at(&self.on_triangle), at(&self.on_box)));
         }
         let lower = lower.max(0.0);
         if lower > limit {
             return FirstStep::Farther;
         }
-        if !(distance - lower <= converged) {
+        if !(distance - lower <= self.converged[lane]) {
             return FirstStep::Open;
         }
         let (on_a, on_b) = (at(&self.on_triangle), at(&self.on_box));
@@ -89,7 +102,7 @@ fn first_steps<S: Simd>(simd: S, triangles: &TriangleLanes, solid: &Cuboid) -> F
     let load = |p: &[[f64; LANES]; 3]| {
         V3(W::load_array_ref(simd, &p[0]), W::load_array_ref(simd, &p[1]), W::load_array_ref(simd, &p[2]))
     };
-    let corners = [load(&triangles.0[0]), load(&triangles.0[1]), load(&triangles.0[2])];
+    let corners = [load(&triangles.corners[0]), load(&triangles.corners[1]), load(&triangles.corners[2])];
     let [a, b, c] = corners;
     let h = splat(simd, solid.half_extents);
     let minus_h = splat(simd, -solid.half_extents);
@@ -114,14 +127,16 @@ fn first_steps<S: Simd>(simd: S, triangles: &TriangleLanes, solid: &Cuboid) -> F
     let mut out = FirstSteps {
         distance: [0.0; LANES],
         lower: [0.0; LANES],
-        tolerance: [[0.0; LANES]; 2],
+        converged: [0.0; LANES],
+        touching: [0.0; LANES],
+        set: triangles.set,
         on_triangle: [[0.0; LANES]; 3],
         on_box: [[0.0; LANES]; 3],
     };
     distance.store_slice(&mut out.distance);
     lower.store_slice(&mut out.lower);
-    (scale * CONVERGED).store_slice(&mut out.tolerance[0]);
-    error.store_slice(&mut out.tolerance[1]);
+    (scale * CONVERGED).store_slice(&mut out.converged);
+    error.store_slice(&mut out.touching);
     for (to, from) in [(&mut out.on_triangle, on_triangle), (&mut out.on_box, on_box)] {
         from.0.store_slice(&mut to[0]);
         from.1.store_slice(&mut to[1]);
@@ -216,7 +231,7 @@ mod tests {
             limit in 0.0..3.0,
         ) {
             let solid = Cuboid { half_extents: half.into() };
-            let mut lanes = TriangleLanes::ZERO;
+            let mut lanes = TriangleLanes::NONE;
             for (lane, corners) in triangles.iter().enumerate() {
                 lanes.set(lane, corners);
             }
@@ -239,7 +254,7 @@ mod tests {
     #[test]
     fn parallel_faces_need_one_step() {
         let solid = Cuboid { half_extents: Vec3::splat(0.5) };
-        let mut lanes = TriangleLanes::ZERO;
+        let mut lanes = TriangleLanes::NONE;
         for lane in 0..LANES {
             let shift = Vec3::new(0.04 * lane as f64 - 0.2, 0.0, 0.8);
             lanes.set(lane, &[Vec3::ZERO, Vec3::X * 0.1, Vec3::Y * 0.1].map(|p| p + shift));

@@ -8,12 +8,13 @@ pub(crate) trait MotionValidator {
     /// Whether the motion between two configurations, of which the first one is valid, passes the test.
     fn motion_is_free(&mut self, from: &[f64], to: &[f64]) -> bool;
 
-    /// Number of motions that [`failing_motions`](Self::failing_motions) takes at once; 1 if it knows nothing before the test.
+    /// Number of motions that [`failing_motions`](Self::failing_motions) takes at once, at most 32; 1 if it knows nothing before
+    /// the test.
     fn motions_at_once(&self) -> usize {
         1
     }
 
-    /// Which of several motions certainly fail the test: one bit per motion.
+    /// Which of several motions certainly fail the test: one bit per motion. A motion without a bit may fail too.
     fn failing_motions(&mut self, motions: &[(&[f64], &[f64])]) -> u32 {
         let _ = motions;
         0

@@ -12,8 +12,8 @@ use crate::interpolation::{length, lerp};
 
 /// Dynamic domain of a node after a failure, rad (and m).
 const DOMAIN_RADIUS: f32 = 4.0;
-/// Factor of a domain for each sample beyond it: where most samples are far away, as for robots with many joints that turn
-/// without end, the domain grows until enough of them are tried.
+/// Factor of a domain for each sample beyond it. Where most samples are far away, as for robots with many joints that turn
+/// without end, hundreds are kept out for each one that is tried; then the domain grows, until one is tried and fails.
 const DOMAIN_GROWTH: f32 = 1.001;
 
 /// Number of failed extensions in a row from which several are tried at once: where most fail, a test that only rejects
@@ -36,6 +36,7 @@ pub(crate) trait ConfigurationSampler {
 struct Extension {
     /// The node that it begins at.
     near: usize,
+    /// The configuration that it ends at.
     end: Vec<f64>,
 }
 
@@ -64,7 +65,7 @@ impl<'v, V: MotionValidator> TreeSearch<'v, V> {
         let mut sample = self.trees[0].q(0).to_vec();
         let mut extensions = Vec::new();
         let (mut round, mut failures) = (0, 0);
-        while !self.validator.is_exhausted() {
+        loop {
             if self.trees[0].len() > self.trees[1].len() {
                 self.trees.swap(0, 1);
                 self.is_swapped = !self.is_swapped;
@@ -72,6 +73,9 @@ impl<'v, V: MotionValidator> TreeSearch<'v, V> {
             let count = if failures < FAILURES { 1 } else { self.validator.motions_at_once() };
             extensions.clear();
             for _ in 0..SAMPLES {
+                if self.validator.is_exhausted() {
+                    return None;
+                }
                 sampler.sample(self.trees[0].q(round % self.trees[0].roots()), &mut sample);
                 round += 1;
                 extensions.extend(self.extension(&sample));
@@ -81,12 +85,15 @@ impl<'v, V: MotionValidator> TreeSearch<'v, V> {
             }
             let failing = self.failing(&extensions);
             for (index, extension) in extensions.drain(..).enumerate() {
-                failures += 1;
                 if failing >> index & 1 == 1 {
                     self.shrink_domain(0, extension.near);
+                    failures += 1;
                     continue;
                 }
-                let Some(node) = self.extend(0, extension) else { continue };
+                let Some(node) = self.extend(0, extension) else {
+                    failures += 1;
+                    continue;
+                };
                 failures = 0;
                 if let Some(other) = self.connect(node)
                     && self.is_proven(node, other)
@@ -96,7 +103,6 @@ impl<'v, V: MotionValidator> TreeSearch<'v, V> {
                 break;
             }
         }
-        None
     }
 
     /// The extension of the first tree towards a sample, if that is in the domain of its nearest node.
@@ -183,5 +189,87 @@ impl<'v, V: MotionValidator> TreeSearch<'v, V> {
             path.reverse();
         }
         path
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point in the square from 0 to 1, with a wall at x = 0.5 below y = 0.99.
+    struct Wall {
+        questions: usize,
+        most: usize,
+        /// Motions that were known to fail and may not be tested.
+        failing: Vec<Vec<f64>>,
+        batches: usize,
+    }
+
+    impl Wall {
+        fn blocks(from: &[f64], to: &[f64]) -> bool {
+            let share = (0.5 - from[0]) / (to[0] - from[0]);
+            (0.0..=1.0).contains(&share) && from[1] + share * (to[1] - from[1]) < 0.99
+        }
+    }
+
+    impl MotionValidator for Wall {
+        fn motion_is_free(&mut self, from: &[f64], to: &[f64]) -> bool {
+            assert!(!self.failing.iter().any(|end| end == to), "{to:?} is known to fail");
+            !Self::blocks(from, to)
+        }
+
+        fn motions_at_once(&self) -> usize {
+            4
+        }
+
+        fn failing_motions(&mut self, motions: &[(&[f64], &[f64])]) -> u32 {
+            assert!((2..=4).contains(&motions.len()));
+            self.batches += 1;
+            let blocked = |(index, (from, to)): (usize, &(&[f64], &[f64]))| u32::from(Self::blocks(from, to)) << index;
+            let failing = motions.iter().enumerate().map(blocked).sum::<u32>();
+            let ends = motions.iter().enumerate().filter(|(index, _)| failing >> index & 1 == 1);
+            self.failing = ends.map(|(_, (_, to))| to.to_vec()).collect();
+            failing
+        }
+
+        fn is_exhausted(&mut self) -> bool {
+            self.questions += 1;
+            self.questions > self.most
+        }
+
+        fn longest_edge(&self) -> f64 {
+            0.2
+        }
+    }
+
+    impl<F: FnMut(&mut [f64])> ConfigurationSampler for F {
+        fn sample(&mut self, _: &[f64], out: &mut [f64]) {
+            self(out);
+        }
+    }
+
+    fn wall(most: usize) -> Wall {
+        Wall { questions: 0, most, failing: Vec::new(), batches: 0 }
+    }
+
+    #[test]
+    fn motions_that_certainly_fail_are_not_tested_and_a_path_is_found() {
+        let (mut validator, mut random) = (wall(100_000), elbowroom_testkit::random::Random(4));
+        let mut search = TreeSearch::new(&mut validator, &[0.4, 0.1], [&[0.6, 0.1][..]]);
+        let path = search.run(&mut |q: &mut [f64]| q.fill_with(|| random.unit())).unwrap();
+        assert!(path.windows(2).all(|edge| !Wall::blocks(&edge[0], &edge[1])));
+        assert!(validator.batches > 10, "{}", validator.batches);
+    }
+
+    #[test]
+    fn whether_the_search_must_end_is_asked_for_each_sample() {
+        let (mut validator, mut samples) = (wall(50), 0);
+        let mut search = TreeSearch::new(&mut validator, &[0.4, 0.1], [&[0.6, 0.1][..]]);
+        let found = search.run(&mut |q: &mut [f64]| {
+            samples += 1;
+            q.copy_from_slice(&[0.4, 0.1]);
+        });
+        assert!(found.is_none());
+        assert_eq!(samples, 50);
     }
 }

@@ -1,7 +1,7 @@
 //! The minimum distance: one decreasing upper bound over all pairs.
 
 use super::core::{Candidate, CheckerCore};
-use super::pair_list::{CarrierBlock, PairList};
+use super::pair_list::{CarrierBlock, GeometryPair, PairList};
 use super::result::PairDistance;
 use crate::{Level, SceneState};
 
@@ -14,19 +14,24 @@ impl CheckerCore<'_> {
         self.finest = Level::L1;
         self.upper_bound = f64::INFINITY;
         let mut best: Option<PairDistance> = None;
-        // The nearest pair of the last query is likely to be nearest again, and gives a limit for the other pairs.
-        let last = list.nearest.filter(|_| self.options.level != Level::L1);
-        let is_bounded = last.is_some_and(|index| self.tighten_upper_bound(list, index, state));
-        let measured = last.filter(|_| !is_bounded);
+        // The nearest pair of the last query is likely to be nearest again, and gives a limit for the other pairs, unless it
+        // does not count in this state.
+        let counts = |pair: &GeometryPair| self.proven_distance(pair, state) < f64::INFINITY;
+        let last = list.nearest.filter(|index| self.options.level != Level::L1 && counts(&list.pairs[*index]));
+        let bounded = last.filter(|index| self.tighten_upper_bound(list, *index, state));
+        let measured = last.filter(|_| bounded.is_none());
         if let Some(index) = measured {
             self.measure(list, index, state, &mut best, false);
         }
-        // Among equally near pairs it stays the nearest, unless it is one of two meshes.
-        let mut wins_ties = last.filter(|index| is_bounded && !self.are_meshes(list, *index));
+        // Among equally near pairs it stays the nearest. Pairs of two meshes have always been ordered like all others.
+        let mut tied_first = bounded.filter(|index| !self.are_meshes(list, *index));
         self.broad_phase_by_gap(list, state, &mut best, measured);
         self.sort_candidates();
         for i in 0..self.candidates.len().min(UPPER_BOUNDS) {
-            self.tighten_upper_bound(list, self.candidates[i].index as usize, state);
+            let index = self.candidates[i].index as usize;
+            if Some(index) != bounded {
+                self.tighten_upper_bound(list, index, state);
+            }
         }
         for i in 0..self.candidates.len() {
             let Candidate { key, index, .. } = self.candidates[i];
@@ -35,10 +40,10 @@ impl CheckerCore<'_> {
                 break;
             }
             let index = index as usize;
-            let wins = wins_ties.take_if(|last| *last == index).is_some();
-            self.measure(list, index, state, &mut best, wins);
+            let wins_ties = tied_first.take_if(|last| *last == index).is_some();
+            self.measure(list, index, state, &mut best, wins_ties);
         }
-        if let Some(index) = wins_ties.filter(|last| self.may_tie(*last, best.as_ref())) {
+        if let Some(index) = tied_first.filter(|last| self.may_tie(*last, best.as_ref())) {
             self.measure(list, index, state, &mut best, true);
         }
         self.answered();

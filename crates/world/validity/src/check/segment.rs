@@ -112,9 +112,9 @@ impl Workspace {
         }
     }
 
-    /// Puts 0 into some lanes.
-    pub fn clear_lanes(&mut self, first: usize, count: usize) {
-        self.values.iter_mut().for_each(|values| values.0[first..first + count].fill(0.0));
+    /// Copies the configurations of some lanes into others.
+    pub fn copy_lanes(&mut self, from: usize, to: usize, count: usize) {
+        self.values.iter_mut().for_each(|values| values.0.copy_within(from..from + count, to));
     }
 
     /// Sets the joint values of one lane. False if the bounds do not hold for them.

@@ -18,9 +18,11 @@ impl ValidityChecker<'_> {
     /// their configurations: one bit per edge. Edges without a bit may be free or not. Far cheaper than
     /// [`edge_is_free`](Self::edge_is_free), which is false for an edge with a bit.
     ///
+    /// Further edges than the first [`EDGES_AT_ONCE`] have no bit, nor have edges with NaN or infinite values, or on which a
+    /// joint changes by more than 4.5 rad or m.
+    ///
     /// # Errors
-    /// [`ValidityError::WrongCount`] if the number of values is wrong. Further edges than the first [`EDGES_AT_ONCE`] have no
-    /// bit, nor have edges with NaN or infinite values.
+    /// [`ValidityError::WrongCount`] if the number of values is wrong.
     ///
     /// ```
     /// use elbowroom_proximity::{Shape, Sphere};
@@ -37,16 +39,21 @@ impl ValidityChecker<'_> {
     /// ```
     pub fn edges_in_obstacles(&mut self, edges: &[(&[f64], &[f64])]) -> Result<u32, ValidityError> {
         let edges = &edges[..edges.len().min(EDGES_AT_ONCE)];
-        let mut active = 0;
+        let mut active = 0u32;
         for (index, (from, to)) in edges.iter().enumerate() {
             self.expect_count(from)?;
             self.expect_count(to)?;
             if self.workspace.set_stretch(self.robot, &Stretch { from, to, begin: 0.0, end: 1.0 }) {
                 self.workspace.put_stretch(index * PER_EDGE, PER_EDGE);
                 active |= 1 << index;
-            } else {
-                self.workspace.clear_lanes(index * PER_EDGE, PER_EDGE);
             }
+        }
+        if active == 0 {
+            return Ok(0);
+        }
+        // The other lanes repeat an edge, so that they do not enlarge what the broad phase looks around.
+        for index in (0..EDGES_AT_ONCE).filter(|index| active >> index & 1 == 0) {
+            self.workspace.copy_lanes(active.trailing_zeros() as usize * PER_EDGE, index * PER_EDGE, PER_EDGE);
         }
         self.blocks += 1;
         let model = block_model!(self);

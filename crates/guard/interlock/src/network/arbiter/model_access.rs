@@ -9,7 +9,8 @@ impl Arbiter {
     }
 
     /// Forgets state that no later step reads: the reported deadlocks, all reports that cannot be trusted, and of the
-    /// other reports everything but whether the robot occupies the slot and obeys a grant.
+    /// other reports everything but whether the robot occupies the slot and obeys a grant, and whether it is committed while
+    /// the slot is kept for it.
     pub(crate) fn forget_unread(&mut self) {
         let any = Some(Token { boot: Boot(1), number: 1 });
         self.deadlocks.clear();
@@ -20,7 +21,6 @@ impl Arbiter {
             let is_trusted = robot.is_trusted;
             for (report, slot) in robot.reports.iter_mut().zip(&self.slots) {
                 let is_kept = slot.holder.is_some_and(|h| h.robot.0 == r && h.token.is_none());
-                // Whether it is committed or inside only counts while the slot is kept for it.
                 let occupancy = match super::super::model::renaming::what_counts(report.occupancy) {
                     Occupancy::Committed if !is_kept => Occupancy::Inside,
                     occupancy => occupancy,

@@ -15,7 +15,7 @@
 //! - **Programs**: a robot is in the warning zone or inside; in a larger model also at rest before the border, where it may
 //!   count as one that can no longer stop outside, in any order. A robot that is outside may do nothing that a robot in the
 //!   warning zone could not do, if it may be asked to give up its grant, and need not request one. A robot that moves and can
-//!   no longer stop has been let in: it is on its way from the warning zone.
+//!   no longer stop was let in. Its next tick finds it inside, which an arbiter treats at least as strictly as committed.
 //!
 //! So each step of a cell, seen from two of its robots and one slot, is none, one or a few steps of this model.
 //! `projection` checks this for each step of long schedules of larger cells.
@@ -60,7 +60,9 @@ impl CellModel {
             let nexts = self.nexts(state, Some(state.other()));
             steps.extend(nexts.iter().map(|next| ArbiterStep::Other(Report::Outside, *next)));
             steps.push(ArbiterStep::Other(Report::Inside, Next::Undecided));
-            steps.extend(nexts.iter().map(|next| ArbiterStep::Other(Report::Committed, *next)));
+            // While it reports that, nobody else is granted the slot.
+            steps.push(ArbiterStep::Other(Report::Committed, Next::Undecided));
+            steps.push(ArbiterStep::Other(Report::Committed, Next::Other));
             steps.extend(self.robots().map(ArbiterStep::Answer));
         }
     }

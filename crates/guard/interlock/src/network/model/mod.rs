@@ -23,7 +23,8 @@ mod state;
 use stateright::{Model, Property};
 
 use crate::{
-    Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, RobotSettings, RobotSlot, SlotId, StateMessage, Token,
+    Arbiter, ArbiterSettings, Boot, GrantsMessage, Guard, Micros, Occupancy, RobotSettings, RobotSlot, SlotId,
+    SlotReport, StateMessage, Token,
 };
 use action::{Action, ArbiterStep, Next, Step};
 use programs::Program;
@@ -75,6 +76,8 @@ enum PlantedFault {
     UnilateralRelease,
     /// A guard gives a grant up before it has seen that its robot can still stop outside.
     UnseenRelease,
+    /// The arbiter takes a robot at rest before the border for one that is inside.
+    CommittedIsInside,
 }
 
 /// A small cell.
@@ -236,8 +239,10 @@ impl CellModel {
         if self.is_free {
             message.slots.iter_mut().for_each(|report| report.wants = next == Next::Robot(robot));
         }
-        if self.planted == PlantedFault::TokensUnchecked {
-            give_up_all(&mut message);
+        match self.planted {
+            PlantedFault::TokensUnchecked => give_up_all(&mut message),
+            PlantedFault::CommittedIsInside => message.slots.iter_mut().for_each(take_for_inside),
+            _ => {}
         }
         let outputs = state.arbiter.receive(&message, NOW);
         self.reply(state, outputs.replies);
@@ -387,6 +392,12 @@ impl Model for CellModel {
 
     fn properties(&self) -> Vec<Property<Self>> {
         vec![Property::always(EXCLUSION, CellModel::is_exclusive)]
+    }
+}
+
+fn take_for_inside(report: &mut SlotReport) {
+    if report.occupancy == Occupancy::Committed {
+        report.occupancy = Occupancy::Inside;
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Occupancy;
 
-/// Maps an occupancy to the case that the arbiter distinguishes: unknown, outside or inside.
+/// Maps an occupancy to the case that the arbiter distinguishes: unknown, outside, committed or inside.
 pub(crate) fn what_counts(occupancy: Occupancy) -> Occupancy {
     match occupancy {
         Occupancy::Unknown => Occupancy::Unknown,
