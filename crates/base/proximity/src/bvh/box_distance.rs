@@ -5,7 +5,7 @@ use fearless_simd::{Simd, dispatch, prelude::*};
 
 use super::bvh16::Bvh16;
 use super::node::{ARITY, LEAF_SIZE, Leaf, Node};
-use super::node_bound::NodeBound;
+use super::node_bound::{NodeBound, normals};
 use crate::lanes::{
     F32_ERROR, V3, W8, W16, abs16, array8, array16, detected_simd_level, load_corners, load16, narrow, splat8, splat16,
 };
@@ -85,9 +85,7 @@ impl BoxDistance {
             (p.min(q).min(r) - half).max(-p.max(q).max(r) - half).max(zero)
         };
         let own = V3(gap(self.axes[0], self.half[0]), gap(self.axes[1], self.half[1]), gap(self.axes[2], self.half[2]));
-        let n = q.minus(p).cross(r.minus(p));
-        // Not longer than 1.
-        let n = n.times(W8::splat(simd, 0.999_999) / n.dot(n).max(1e-30).sqrt());
+        let n = normals(simd, [p, q, r]);
         let (p, q, r) = (n.dot(p), n.dot(q), n.dot(r));
         let reach = |axis: [f32; 3], half: f32| n.dot(splat8(simd, axis)).abs() * half;
         let reach =

@@ -18,13 +18,18 @@ pub(crate) trait NodeBound {
     }
 }
 
+/// Normals of triangles, not longer than 1.
+#[inline(always)]
+pub(super) fn normals<S: Simd>(simd: S, [p, q, r]: [V3<W8<S>>; 3]) -> V3<W8<S>> {
+    let n = q.minus(p).cross(r.minus(p));
+    n.times(W8::splat(simd, 0.999_999) / n.dot(n).max(1e-30).sqrt())
+}
+
 /// The triangles of a leaf as the children of a node.
 #[inline(always)]
 fn node_of_triangles<S: Simd>(simd: S, leaf: &Leaf) -> Node {
     let [p, q, r] = load_corners(simd, &leaf.corner);
-    let n = q.minus(p).cross(r.minus(p));
-    let length = n.dot(n).max(1e-30).sqrt();
-    let n = n.times(W8::splat(simd, 0.999_999) / length);
+    let n = normals(simd, [p, q, r]);
     let (hp, hq, hr) = (n.dot(p), n.dot(q), n.dot(r));
     let low = V3(p.0.min(q.0).min(r.0), p.1.min(q.1).min(r.1), p.2.min(q.2).min(r.2));
     let high = V3(p.0.max(q.0).max(r.0), p.1.max(q.1).max(r.1), p.2.max(q.2).max(r.2));
