@@ -118,7 +118,7 @@ pub(crate) fn segment_segment(a0: Vec3, a1: Vec3, b0: Vec3, b1: Vec3) -> Closest
 }
 
 /// Squared ratio of height to longest edge up to which a triangle is slender.
-pub(crate) const SLENDER: f64 = 1e-4;
+const SLENDER: f64 = 1e-4;
 
 /// True if the plane of the triangle is too inaccurate in f64. `normal` is the cross product of two edges.
 #[inline]

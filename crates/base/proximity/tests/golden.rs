@@ -201,7 +201,7 @@ fn meshes() -> u64 {
 
 /// Golden hashes. A change here is a change of answers: state why.
 ///
-/// 2026-11-30: triangles beside a solid are visited by tighter bounds, so fewer are measured: lower bounds are those of fewer
+/// 2026-11-30: triangles beside a solid are visited by tighter bounds, so fewer are measured. So lower bounds come from fewer
 /// triangles, and of equally near ones another may be the nearest, which differs in the last bits of witness points.
 const GOLDEN: [u64; 4] = [0xf30e_928b_cdd4_ed31, 0x534a_1f08_b8d4_574d, 0x0fa3_168d_1482_3dd0, 0x0f36_acca_e098_7658];
 

@@ -24,5 +24,4 @@ pub(crate) use least_height::LeastHeight;
 pub(crate) use node::{ARITY, LEAF_SIZE, Leaf, Node};
 pub(crate) use node_bound::NodeBound;
 pub(crate) use ray::Ray;
-pub(crate) use traversal::LeafTriangles;
 pub(crate) use unit_frame::UnitFrame;

@@ -18,23 +18,7 @@ const STACK_SIZE: usize = 16 * 10;
 impl Bvh16 {
     /// Calls `leaf` with the index of every triangle whose bound is not above `limit`, smallest bound of siblings first;
     /// `leaf` returns the limit for the rest of the traversal.
-    pub(crate) fn traverse(&self, query: &dyn NodeBound, limit: f32, leaf: &mut dyn FnMut(usize) -> f32) {
-        self.traverse_leaves(query, limit, &mut |mut triangles, mut limit| {
-            while let Some((_, triangle)) = triangles.next(limit) {
-                limit = leaf(triangle);
-            }
-            limit
-        });
-    }
-
-    /// Calls `leaf` with the triangles of every leaf whose bound is not above `limit`, and the limit; it returns the limit
-    /// for the rest of the traversal.
-    pub(crate) fn traverse_leaves(
-        &self,
-        query: &dyn NodeBound,
-        mut limit: f32,
-        leaf: &mut dyn FnMut(LeafTriangles<'_>, f32) -> f32,
-    ) {
+    pub(crate) fn traverse(&self, query: &dyn NodeBound, mut limit: f32, leaf: &mut dyn FnMut(usize) -> f32) {
         let mut stack = [PendingNode { bound: 0.0, number: 0, height: 0 }; STACK_SIZE];
         stack[0] = PendingNode { bound: f32::NEG_INFINITY, number: 0, height: self.height() as u8 };
         let mut len = 1;
@@ -47,7 +31,7 @@ impl Bvh16 {
             }
             let number = number as usize;
             if height == 0 {
-                limit = leaf(LeafTriangles::new(self, query, number), limit);
+                limit = self.visit_leaf(query, number, limit, leaf);
                 continue;
             }
             let bounds = query.lower_bounds(self.node(height as usize, number));
@@ -61,36 +45,16 @@ impl Bvh16 {
             stack[first..len].reverse();
         }
     }
-}
 
-/// The triangles of a leaf that are still to be visited.
-pub(crate) struct LeafTriangles<'t> {
-    tree: &'t Bvh16,
-    first: usize,
-    bounds: [f32; LEAF_SIZE],
-    left: u32,
-}
-
-impl<'t> LeafTriangles<'t> {
-    fn new(tree: &'t Bvh16, query: &dyn NodeBound, number: usize) -> Self {
-        let bounds = query.leaf_bounds(&tree.leaves[number]);
-        Self { tree, first: number * LEAF_SIZE, bounds, left: (1u32 << tree.leaf_len(number)) - 1 }
-    }
-
-    /// Takes the triangle with the smallest bound, if it is not above the limit: its lane and its index.
-    pub fn next(&mut self, limit: f32) -> Option<(usize, usize)> {
-        let lane = take_smallest(&self.bounds, &mut self.left, limit)?;
-        Some((lane, self.triangle(lane)))
-    }
-
-    /// The triangles whose bounds are not above the limit: their lanes and their indices.
-    pub fn within(&self, limit: f32) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let is_within = move |lane: &usize| self.left >> lane & 1 == 1 && !(self.bounds[*lane] > limit);
-        (0..LEAF_SIZE).filter(is_within).map(|lane| (lane, self.triangle(lane)))
-    }
-
-    fn triangle(&self, lane: usize) -> usize {
-        self.tree.triangle((self.first + lane) as u32)
+    fn visit_leaf(&self, query: &dyn NodeBound, number: usize, limit: f32, leaf: &mut dyn FnMut(usize) -> f32) -> f32 {
+        let first = number * LEAF_SIZE;
+        let bounds = query.leaf_bounds(&self.leaves[number]);
+        let mut left = (1u32 << self.leaf_len(number)) - 1;
+        let mut limit = limit;
+        while let Some(lane) = take_smallest(&bounds, &mut left, limit) {
+            limit = leaf(self.triangle((first + lane) as u32));
+        }
+        limit
     }
 }
 

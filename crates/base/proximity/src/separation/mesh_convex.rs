@@ -11,9 +11,8 @@ use super::mesh_continuous_witness::{mesh_continuous_witness, tolerances};
 use super::projections;
 use super::segment::Segment;
 use super::support_features::bounding_sphere;
-use super::triangle_box_kernel::{FirstStep, FirstSteps, TriangleLanes};
 use crate::TriMesh;
-use crate::bvh::{BoxDistance, LeafTriangles, LeastHeight};
+use crate::bvh::{BoxDistance, LeastHeight};
 use crate::mesh_mesh::QueryStats;
 use crate::triangle::{nearest_on_triangle, segment_triangle};
 
@@ -72,36 +71,35 @@ impl Best {
         let query = BoxDistance::new(&mesh.bvh, &core.aabb(), core_in_mesh);
         match core {
             Core::Point => {
-                self.search(mesh, &query, &mut |i| Gap::closed(nearest_on_triangle(t, mesh.corners(i)), t, scale));
+                let gap = |i| Gap::closed(nearest_on_triangle(t, mesh.corners(i)), t, scale);
+                self.search(mesh, &query, &mut |i, _| Some(gap(i)));
             }
             Core::Segment(half) => {
                 let axis = Segment { middle: t, direction: core_in_mesh.rotation.z_axis(), half: *half };
                 let (p, q) = (axis.at(-half), axis.at(*half));
-                self.search(mesh, &query, &mut |i| {
+                self.search(mesh, &query, &mut |i, _| {
                     let near = segment_triangle(p, q, mesh.corners(i));
-                    Gap::closed(near.on_b, near.on_a, scale)
+                    Some(Gap::closed(near.on_b, near.on_a, scale))
                 });
             }
-            _ => self.search(mesh, &query, &mut CoreTriangles::new(mesh, core, core_in_mesh, scale)),
+            _ => {
+                let mut triangles = CoreTriangles::new(mesh, core, core_in_mesh, scale);
+                self.search(mesh, &query, &mut |i, limit| triangles.gap(i, limit));
+            }
         }
     }
 
-    /// Offers the gaps of all triangles that may be within the limit of the core's box.
-    fn search(&mut self, mesh: &TriMesh, query: &BoxDistance, gaps: &mut dyn TriangleGaps) {
-        let first = BoxDistance::limit(&mesh.bvh, self.limit);
-        mesh.bvh.traverse_leaves(query, first, &mut |mut triangles, mut limit| {
-            gaps.begin_leaf(&triangles, limit);
-            while let Some((lane, triangle)) = triangles.next(limit) {
-                self.measured += 1;
-                if let Some(gap) = gaps.gap(lane, triangle, self.limit + self.tie_tolerance) {
-                    self.offer(triangle, gap);
-                }
-                if self.is_done() {
-                    return f32::NEG_INFINITY;
-                }
-                limit = BoxDistance::limit(&mesh.bvh, self.limit + self.tie_tolerance);
+    /// Offers the gap that `leaf` computes for every triangle that may be within the limit of the core's box.
+    fn search(&mut self, mesh: &TriMesh, query: &BoxDistance, leaf: &mut dyn FnMut(usize, f64) -> Option<Gap>) {
+        mesh.bvh.traverse(query, BoxDistance::limit(&mesh.bvh, self.limit), &mut |triangle| {
+            self.measured += 1;
+            if let Some(gap) = leaf(triangle, self.limit + self.tie_tolerance) {
+                self.offer(triangle, gap);
             }
-            limit
+            if self.is_done() {
+                return f32::NEG_INFINITY;
+            }
+            BoxDistance::limit(&mesh.bvh, self.limit + self.tie_tolerance)
         });
     }
 }
@@ -117,21 +115,6 @@ pub(super) fn mesh_core_upper_bound(mesh: &TriMesh, core: &Core, core_in_mesh: &
 fn scale(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose) -> f64 {
     let extent = mesh.aabb().min.abs().max(mesh.aabb().max.abs()).max_element();
     3.0 * extent + core_in_mesh.translation.abs().max_element() + core.size()
-}
-
-/// The gaps of triangles and a core, in the mesh's frame.
-trait TriangleGaps {
-    /// Called before the first triangle of each leaf, with the limit of the traversal.
-    fn begin_leaf(&mut self, _leaf: &LeafTriangles<'_>, _limit: f32) {}
-
-    /// The gap of a triangle, which has this lane in its leaf; `None` if it is proven to be above the limit.
-    fn gap(&mut self, lane: usize, triangle: usize, limit: f64) -> Option<Gap>;
-}
-
-impl<F: Fn(usize) -> Gap> TriangleGaps for F {
-    fn gap(&mut self, _: usize, triangle: usize, _: f64) -> Option<Gap> {
-        Some(self(triangle))
-    }
 }
 
 /// Gap of a mesh and a convex core in the mesh's frame; `None` if it exceeds the limit by more than the core's
@@ -179,60 +162,25 @@ struct CoreTriangles<'c> {
     /// The direction from the core to the last triangle within the limit, and the core's support plane there: likely to
     /// prove that other triangles are not.
     toward_mesh: Option<(Vec3, f64)>,
-    /// The first steps of the triangles of a leaf, if they were made together.
-    together: Option<FirstSteps>,
 }
-
-/// Least number of triangles of a leaf whose first steps are made together.
-const LEAST_TOGETHER: usize = 3;
 
 impl<'c> CoreTriangles<'c> {
     fn new(mesh: &'c TriMesh, core: &'c Core<'c>, core_in_mesh: &'c Pose, scale: f64) -> Self {
-        let mesh_in_core = core_in_mesh.inverse();
-        Self { mesh, core, core_in_mesh, mesh_in_core, scale, toward_mesh: None, together: None }
+        Self { mesh, core, core_in_mesh, mesh_in_core: core_in_mesh.inverse(), scale, toward_mesh: None }
     }
 
-    /// The corners of a triangle in the core's frame.
-    fn corners(&self, triangle: usize) -> [Vec3; 3] {
-        self.mesh.corners(triangle).map(|p| self.mesh_in_core.transform_point(p))
-    }
-
-    /// The gap of a triangle in the core's frame.
-    fn gap_of_one(&self, triangle: usize, limit: f64) -> Option<Gap> {
-        let corners = self.corners(triangle);
+    /// The gap of a triangle in the mesh's frame; `None` if it is proven to be above the limit.
+    fn gap(&mut self, triangle: usize, limit: f64) -> Option<Gap> {
+        let corners = self.mesh.corners(triangle).map(|p| self.mesh_in_core.transform_point(p));
+        // The rounding of the transformation back is subtracted from the lower bound below.
+        let limit = limit + 2.0 * rounding(self.scale);
         if let Some((direction, reach)) = self.toward_mesh {
             let [p, q, r] = corners.map(|corner| corner.dot(direction));
             if p.min(q).min(r) - reach - rounding(self.scale) > limit {
                 return None;
             }
         }
-        projections::distance(&Core::Triangle(corners), self.core, &Pose::IDENTITY, limit)
-    }
-}
-
-impl TriangleGaps for CoreTriangles<'_> {
-    fn begin_leaf(&mut self, leaf: &LeafTriangles<'_>, limit: f32) {
-        self.together = None;
-        let Core::Cuboid(solid) = self.core else { return };
-        if leaf.within(limit).count() < LEAST_TOGETHER {
-            return;
-        }
-        let mut lanes = TriangleLanes::NONE;
-        for (lane, triangle) in leaf.within(limit) {
-            lanes.set(lane, &self.corners(triangle));
-        }
-        self.together = Some(FirstSteps::of(&lanes, solid));
-    }
-
-    fn gap(&mut self, lane: usize, triangle: usize, limit: f64) -> Option<Gap> {
-        // The rounding of the transformation back is subtracted from the lower bound below.
-        let limit = limit + 2.0 * rounding(self.scale);
-        let first = self.together.as_ref().map_or(FirstStep::Open, |steps| steps.answer(lane, limit));
-        let gap = match first {
-            FirstStep::Farther => return None,
-            FirstStep::Measured(gap) => gap,
-            FirstStep::Open => self.gap_of_one(triangle, limit)?,
-        };
+        let gap = projections::distance(&Core::Triangle(corners), self.core, &Pose::IDENTITY, limit)?;
         self.toward_mesh = (gap.on_a - gap.on_b).try_normalize().map(|d| (d, self.core.reach(d)));
         let back = |p| self.core_in_mesh.transform_point(p);
         let lower = (gap.lower - rounding(self.scale)).max(0.0);

@@ -19,7 +19,6 @@ mod separating_axes;
 mod settings;
 mod sphere;
 mod support_features;
-mod triangle_box_kernel;
 
 pub(crate) use convex::convex;
 pub(crate) use gap::rounding;
