@@ -43,9 +43,9 @@ pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<(), Str
 ///
 /// # Errors
 /// If cargo does not start.
-pub fn cargo_status(root: &Path, args: &[&str]) -> Result<i32, String> {
+pub fn cargo_status(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<i32, String> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
-    wait(root, &cargo, args, &[])
+    wait(root, &cargo, args, env)
 }
 
 /// Prints and runs a call; returns the exit status, -1 if a signal ended the program.

@@ -217,7 +217,15 @@ pub fn announce_data(root: &Path) {
 /// The command `elbowroom` is compiled with it.
 pub fn devtools(root: &Path, words: &[&str]) -> Result<(), String> {
     let program = program(root, "elbowroom-devtools")?;
-    shell::run(root, &program.to_string_lossy(), words, &[])
+    let covers = own_covers(root, words);
+    let env: Vec<(&str, &str)> = covers.iter().map(|(name, value)| (*name, value.as_str())).collect();
+    shell::run(root, &program.to_string_lossy(), words, &env)
+}
+
+/// The environment of a command of `elbowroom-devtools`: random robots must not fill the cache of the user.
+pub fn own_covers(root: &Path, words: &[&str]) -> Option<(&'static str, String)> {
+    let folder = shell::target_folder(root).join("fuzz-covers").display().to_string();
+    (words.first() == Some(&"fuzz")).then_some(("ELBOWROOM_CACHE", folder))
 }
 
 fn generated(context: &Context) -> Result<(), String> {

@@ -5,6 +5,7 @@ use elbowroom_sim::{InputFault, Recording, RunOptions, simulate};
 
 use super::generate::Places;
 use super::oracle::{self, Findings, Promises};
+use super::pictures::PictureFolders;
 use super::spec::CellSpec;
 
 /// A run and the findings of the oracle.
@@ -28,10 +29,12 @@ pub fn run(cell: &Cell, text: &str, faults: &[InputFault], repeat: u32) -> Resul
 /// are where they were written, is judged too.
 pub fn run_spec(spec: &CellSpec, places: &Places<'_>) -> Result<CheckedRun, String> {
     let cell = spec.parse(places.cells)?;
+    let _pictures = PictureFolders::write(spec, places.cells)?;
     run_and_judge(&cell, &spec.faults, spec.repeat, |recording, findings| {
         oracle::as_written::check(&spec.to_toml(), &cell, recording, findings);
         oracle::as_written::check_scenes(spec, &cell, findings);
         oracle::recorded::check(spec, recording, findings);
+        oracle::seen::check(spec, &cell, recording, findings);
     })
 }
 

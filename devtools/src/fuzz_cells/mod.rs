@@ -4,6 +4,7 @@ mod checked_run;
 mod coverage;
 pub mod generate;
 mod oracle;
+mod pictures;
 mod random;
 mod shrink;
 pub mod spec;
@@ -19,6 +20,7 @@ use elbowroom_cell::Cell;
 use coverage::{CellKeys, Coverage};
 use generate::{Kind, Places};
 use oracle::Finding;
+use pictures::PictureFolders;
 use spec::CellSpec;
 use summary::Summary;
 use xtask::Failure;
@@ -247,11 +249,16 @@ fn report(
     let text = small.to_toml();
     let file = places.cells.join(format!("{}-{}-{case}.toml", kind.name(), options.seed));
     let Ok(cell) = small.parse(places.cells) else { return };
+    let Ok(pictures) = PictureFolders::write(&small, places.cells) else { return };
+    pictures.keep();
     let words = summary::in_words(&finding, &cell);
     let found_by = format!("cargo xtask fuzz cells --kind {} --seed {} --case {case}", kind.name(), options.seed);
-    // What was written into a recording is known only to the generator.
+    // What was written into a recording, or shown to a sensor, is known only to the generator.
     let again = match finding {
-        Finding::OffRecording { .. } => "the same",
+        Finding::OffRecording { .. }
+        | Finding::TouchedSeen { .. }
+        | Finding::MovedUnseen { .. }
+        | Finding::HeldForNothing { .. } => "the same",
         _ => "cargo xtask fuzz cells --replay FILE, or elbowroom run FILE",
     };
     let head = format!("# {words}\n# Found by: {found_by}\n# Again: {again}\n");

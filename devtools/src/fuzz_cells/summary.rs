@@ -103,6 +103,7 @@ names! {
     "slowed mechanisms": Slowed,
     "zones and outputs": TooFastInZone | OutputOff,
     "off recordings": OffRecording,
+    "sensors": TouchedSeen | MovedUnseen | HeldForNothing,
 }
 
 /// Why a cell or one of its programs may be refused: messages have one of these parts. Any other refusal is a mistake of
@@ -328,6 +329,15 @@ fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
         }
         Finding::OffRecording { robot: r, t_s, ahead_s: None } => {
             format!("robot {} is not on the path of its recording at {t_s:.4} s", robot(r))
+        }
+        Finding::TouchedSeen { robot: r, t_s } => {
+            format!("robot {} touched a box that its sensor had seen from the beginning, at {t_s:.4} s", robot(r))
+        }
+        Finding::MovedUnseen { robot: r, t_s } => {
+            format!("robot {} moved at {t_s:.4} s although the last picture of its sensor was too old", robot(r))
+        }
+        Finding::HeldForNothing { robot: r, t_s } => {
+            format!("robot {} was held at {t_s:.4} s for an old picture or an obstacle that there was not", robot(r))
         }
         Finding::Slowed { robot: r, t_s } => format!("mechanism {} was slowed down at {t_s:.4} s", robot(r)),
         Finding::Misread { table, off } => format!("{table}: read otherwise than the file states, by {off:.9}"),

@@ -10,6 +10,7 @@ mod escape_work;
 mod exchange;
 mod following;
 mod guarded_volumes;
+mod held_by_sensors;
 mod kept_inside;
 mod law;
 mod mechanisms;

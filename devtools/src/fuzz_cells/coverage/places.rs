@@ -1,4 +1,4 @@
-//! Where in a cell file the keys of each list are, and which of them no random cell has.
+//! Where in a cell file the keys of each list are.
 
 /// The tables that each list of keys is for. A name that the writer of the file chooses is `*`; rows of a list are its table.
 pub const PLACES: &[(&str, &[&str])] = &[
@@ -45,42 +45,4 @@ pub const PLACES: &[(&str, &[&str])] = &[
     ("solids", &["robot.*.links", "robot.*.tool", "robot.*.tools.*", "robot.*.load"]),
     ("shapes of objects", &["object.*.shape"]),
     ("shapes of regions", &["region.*.shape"]),
-];
-
-/// What random pictures and clouds show is judged by the tests of `perceived_run`.
-const SENSOR: &str = "the oracle sees no pictures and clouds: runs with cameras and clouds have their own tests";
-
-/// Keys that no random cell of the suite has: list, reason, names. The list may only become shorter.
-pub const UNTRIED: &[(&str, &str, &[&str])] = &[
-    (
-        "keys of [camera.NAME]",
-        SENSOR,
-        &["frames", "learning_frames", "mask_margin", "max_speed", "shadows", "templates", "uncertainty"],
-    ),
-    (
-        "keys of [cloud.NAME]",
-        SENSOR,
-        &[
-            "ceiling",
-            "clouds",
-            "depth",
-            "floor_thickness",
-            "learning_clouds",
-            "mask_margin",
-            "max_speed",
-            "min_points",
-            "min_voxels",
-            "to_floor",
-            "uncertainty",
-            "voxel",
-        ],
-    ),
-    ("keys of `depth`", SENSOR, &["step"]),
-    (
-        "keys of a sensor",
-        SENSOR,
-        &["area", "floor", "joints", "latency_ms", "prediction", "robot", "robots", "search_ms", "stale_ms"],
-    ),
-    ("keys of a template", SENSOR, &["diameter", "height", "height_tolerance", "name", "size", "tolerance"]),
-    ("keys of the file", SENSOR, &["cloud"]),
 ];

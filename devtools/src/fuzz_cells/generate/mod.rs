@@ -19,6 +19,7 @@ mod rare;
 mod recordings;
 mod region;
 mod robot;
+mod sensors;
 mod settings;
 mod shields;
 mod tools;
@@ -121,6 +122,9 @@ pub fn cell(kind: Kind, random: &mut Random, places: &Places<'_>) -> CellSpec {
         spec.objects.push(floor(random));
     }
     extras::add(&mut spec, random);
+    if !matches!(kind, Kind::Faults | Kind::Tools | Kind::Guided | Kind::Cooperating) {
+        sensors::some(&mut spec, kind == Kind::Planned, places, random);
+    }
     if spec.repeat == 0 && can_repeat(kind, &spec) && (random.percent(10) || random.rare(3, 5, 0).is_some()) {
         spec.repeat = 2;
     }

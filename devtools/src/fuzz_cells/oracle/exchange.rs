@@ -184,6 +184,10 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
         };
         motion.recording.virtual_robots.iter().any(|v| v.robots.contains(name) && stands(v))
     };
+    // A sensor holds a robot until the way is free, or pictures come again.
+    let is_held = |robot: usize| {
+        motion.recording.robots[robot].perception.as_ref().is_some_and(|track| track.ends_held.is_some())
+    };
     // While a robot moves, for example in a run that was cut off, robots at rest may still be granted a region.
     if (0..in_zone.len()).any(|r| !motion.recording.robots[r].finished && !at_rest(r)) {
         return;
@@ -200,7 +204,7 @@ fn deadlock(motion: &OracleMotion<'_>, in_zone: &[Vec<bool>], has_violation: boo
     }
     // Overlapping regions form one crossing: a robot in the zone of one of them is in all.
     let in_crossing: Vec<Vec<bool>> = in_zone.iter().map(|zones| spread(motion, zones)).collect();
-    let waits = |r: &usize| at_rest(*r) && in_zone[*r].contains(&true) && !stands_with_others(*r);
+    let waits = |r: &usize| at_rest(*r) && in_zone[*r].contains(&true) && !stands_with_others(*r) && !is_held(*r);
     let robots: Vec<usize> = (0..in_zone.len()).filter(waits).collect();
     let meet = |a: usize, b: usize| a != b && in_crossing[a].iter().zip(&in_crossing[b]).any(|(a, b)| *a && *b);
     let circle: Vec<usize> = robots.iter().copied().filter(|a| robots.iter().any(|b| meet(*a, *b))).collect();

@@ -26,6 +26,12 @@ pub enum Finding {
     OffPath { t_s: f64, off_m: f64 },
     /// The recorded share of a work-piece that is hidden from a camera, or the time for which it is hidden, is wrong.
     WrongView { t_s: f64, share: f64, recorded: Option<f64> },
+    /// A robot touched a box that had stood in view of its sensor from the beginning.
+    TouchedSeen { robot: usize, t_s: f64 },
+    /// A robot moved although the last picture of its sensor was too old, or none had come yet.
+    MovedUnseen { robot: usize, t_s: f64 },
+    /// A robot was held for a picture that was not old, or for an obstacle that no picture shows.
+    HeldForNothing { robot: usize, t_s: f64 },
     /// A robot of a virtual robot touched something, or one on planned paths an object.
     Touched { robot: usize, t_s: f64 },
     /// An axis of a tool that keeps its direction on a planned move left it.

@@ -31,9 +31,11 @@ mod presence;
 mod promises;
 pub mod readings;
 pub mod recorded;
+pub mod seen;
 mod shield;
 mod simplex;
 mod solid;
+mod start;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -46,8 +48,10 @@ pub use frame::Frame;
 pub use guarded::Guarded;
 pub use guided::is_clear as is_clear_at_start;
 pub use promises::Promises;
+pub use seen::is_clear_of_box;
+pub use start::start_distance;
 
-use elbowroom_cell::{Cell, ProgramBody};
+use elbowroom_cell::Cell;
 use elbowroom_sim::Recording;
 
 /// Checks a recording against the promises of `check` for its cell; `has_violation` is whether the run reported that
@@ -78,30 +82,4 @@ fn guarded(cell: &Cell, motion: &motion::OracleMotion<'_>) -> Vec<Vec<Guarded>> 
         guarded[grip.robot].push(grip.guarded(cell));
     }
     guarded
-}
-
-/// Returns the least distance (m) of a region at the start from the solids that it guards against, up to a metre; 0 inside.
-pub fn start_distance(cell: &Cell, region: usize) -> f64 {
-    let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
-    let frames: Vec<_> = arms.iter().enumerate().map(|(robot, arm)| arm.frames(start(cell, robot))).collect();
-    let place = place::Place::new(cell, region, None);
-    let at = place.at(0.0, &frames);
-    let one = |robot: &usize| {
-        let counts = |g: &Guarded| g.counts_for(place.guards) && g.is_there_at_start(&cell.robots[*robot]);
-        let guarded = Guarded::all(&cell.robots[*robot]).into_iter().filter(counts);
-        let distance = |g: Guarded| {
-            let is_inside = place.contains(&at, g.any_point(&frames[*robot]));
-            if is_inside { 0.0 } else { g.distance(&frames[*robot], &place.solid, &at, 1.0).lower }
-        };
-        guarded.map(distance).fold(1.0, f64::min)
-    };
-    place.robots.iter().map(one).fold(1.0, f64::min)
-}
-
-/// Returns the joint values at the start; for a recording its first row.
-fn start(cell: &Cell, robot: usize) -> &[f64] {
-    match cell.robots[robot].program.as_ref().map(|p| &p.body) {
-        Some(ProgramBody::Trajectory(trajectory)) => trajectory.first().unwrap_or(&cell.robots[robot].start),
-        _ => &cell.robots[robot].start,
-    }
 }

@@ -44,7 +44,8 @@ fn only_planned(cell: &Cell, robot: usize) -> bool {
     r.avoidance.is_none() && steps.iter().all(|step| is_planned(&step.action))
 }
 
-fn first_touch(
+/// The first time at which a robot touches one of these solids, s.
+pub(super) fn first_touch(
     cell: &Cell,
     recording: &Recording,
     (robot, arm): (usize, &Arm),

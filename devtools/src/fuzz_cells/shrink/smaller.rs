@@ -4,7 +4,7 @@ use elbowroom_robot::RobotId;
 
 use crate::fuzz_cells::spec::{
     CellSpec, Extras, FollowSpec, GuidanceSpec, Model, MotionSpec, ObjectSpec, ProgramSpec, RecordingSpec, RobotSpec,
-    StepSpec, Turns,
+    SensorSpec, StepSpec, Turns,
 };
 
 /// Least number of rows of a recording.
@@ -39,6 +39,7 @@ pub fn candidates(spec: &CellSpec) -> Vec<CellSpec> {
     for i in 0..spec.grids.len() {
         list.push(|c| drop(c.grids.remove(i)));
     }
+    simpler_sensors(&mut list, &spec.extras.sensors);
     for (i, object) in spec.objects.iter().enumerate() {
         without_object(&mut list, i, object);
     }
@@ -80,6 +81,27 @@ fn fewer_extras(list: &mut Candidates<'_>, extras: &Extras) {
     }
     if extras.turns != Turns::Rpy {
         list.push(|c| c.extras.turns = Turns::Rpy);
+    }
+}
+
+/// Adds the cell without each of its sensors, or with less of one.
+fn simpler_sensors(list: &mut Candidates<'_>, sensors: &[SensorSpec]) {
+    for (i, sensor) in sensors.iter().enumerate() {
+        list.push(|c| drop(c.extras.sensors.remove(i)));
+        for b in 0..sensor.boxes.len() {
+            list.push(|c| {
+                c.extras.sensors[i].boxes.remove(b);
+            });
+        }
+        for line in 0..sensor.lines.len() {
+            list.push(|c| drop(c.extras.sensors[i].lines.remove(line)));
+        }
+        if !sensor.unusable.is_empty() {
+            list.push(|c| c.extras.sensors[i].unusable.clear());
+        }
+        if sensor.joints.is_some() {
+            list.push(|c| c.extras.sensors[i].joints = None);
+        }
     }
 }
 
@@ -236,6 +258,12 @@ fn remove_robot(c: &mut CellSpec, i: usize) {
         if let Some(FollowSpec::Robot { robot, .. }) = &mut region.follow {
             *robot = moved(*robot);
         }
+    }
+    c.extras.sensors.retain(|s| s.mapped != i && s.avoiding != [i]);
+    for sensor in &mut c.extras.sensors {
+        sensor.mapped = moved(sensor.mapped);
+        sensor.avoiding.retain(|r| *r != i);
+        sensor.avoiding.iter_mut().for_each(|r| *r = moved(*r));
     }
     c.grids.retain(|g| g.robot != i);
     c.grids.iter_mut().for_each(|g| g.robot = moved(g.robot));

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::files::CellFile;
 use super::scene::SceneSpec;
+use super::sensor::SensorSpec;
 
 /// Further contents of a cell file.
 #[derive(Debug, Clone, Default)]
@@ -15,6 +16,7 @@ pub struct Extras {
     /// Further tables, each with its head.
     pub tables: Vec<String>,
     pub scenes: Vec<SceneSpec>,
+    pub sensors: Vec<SensorSpec>,
     /// Files that they name, beside the cell file.
     pub files: Vec<CellFile>,
     pub turns: Turns,

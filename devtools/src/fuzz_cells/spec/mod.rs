@@ -10,6 +10,7 @@ mod recording;
 mod region;
 mod robot;
 mod scene;
+mod sensor;
 mod text;
 
 use std::fmt::Write as _;
@@ -28,6 +29,7 @@ pub use recording::{RecordingLayout, RecordingSpec};
 pub use region::{BeltSpec, BeltTravel, FollowSpec, PoseRow, RegionSpec};
 pub use robot::{DhRow, GoalSpec, HandSpec, KeepSpec, Model, ProgramSpec, RobotSpec, SolidSpec, StepSpec, ToolSpec};
 pub use scene::{SceneBox, SceneSpec};
+pub use sensor::{LensSpec, SeenBox, SensorSpec, SensorView};
 pub use text::{Vector, list};
 
 /// A whole cell; metres, radians, seconds.
@@ -76,6 +78,7 @@ impl CellSpec {
             }
         }
         self.guidance.iter().for_each(|guidance| guidance.write(&mut t));
+        self.extras.sensors.iter().for_each(|sensor| sensor.write(&mut t));
         comments::write_repeat(&mut t, self.repeat);
         self.faults.iter().for_each(|f| comments::write_fault(&mut t, f));
         self.extras.tables.iter().for_each(|table| t.extend([table, "\n"]));
@@ -106,7 +109,8 @@ impl CellSpec {
         let streams = self.guidance.iter().flat_map(|g| g.shields.iter().cloned().chain([g.file()]));
         let belts = self.belts.iter().filter_map(BeltSpec::file);
         let poses = self.regions.iter().filter_map(RegionSpec::file);
+        let joints = self.extras.sensors.iter().filter_map(|sensor| sensor.joints.clone());
         let extras = self.extras.files.iter().cloned().chain(self.extras.scenes.iter().map(SceneSpec::file));
-        recordings.chain(streams).chain(belts).chain(poses).chain(extras)
+        recordings.chain(streams).chain(belts).chain(poses).chain(joints).chain(extras)
     }
 }

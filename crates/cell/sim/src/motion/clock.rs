@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use elbowroom_cell::PathPlanner;
 use elbowroom_cell::trajectory::Playback;
-use elbowroom_cell::{CellRegionId, PathPlanner};
 use elbowroom_kinematics::JointLimits;
 use elbowroom_kinematics::TrajectoryPoint;
 use elbowroom_robot::ObjectId;
 
+use super::instant_steps::{InstantSteps, RegionSwitch};
 use super::{GripAction, MovePath, PlanStep, ProgramPlan};
 use crate::replanning::{ExecutedMotion, PathAhead, PlannedGoal, SAMPLE_S};
 
@@ -19,23 +20,6 @@ const SAMPLES: u32 = 4;
 const REST_SPEED: f64 = 1e-9;
 /// Time ahead from which the intended velocity is taken at the start of a move from rest, s.
 const LOOKAHEAD_S: f64 = 0.05;
-
-/// A switch of a region by a program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RegionSwitch {
-    /// The region.
-    pub region: CellRegionId,
-    /// On or off.
-    pub active: bool,
-}
-
-/// Steps without duration that were executed and not taken yet.
-#[derive(Debug, Default)]
-struct InstantSteps {
-    switches: Vec<RegionSwitch>,
-    grips: Vec<GripAction>,
-    tools: Vec<usize>,
-}
 
 /// Largest fraction of any joint's top speed that a step uses.
 fn joint_share(step: &PlanStep, limits: &[JointLimits]) -> f64 {
@@ -162,6 +146,11 @@ impl ProgramClock {
     /// True during a move.
     pub fn moving(&self) -> bool {
         matches!(self.plan.steps.get(self.step), Some(PlanStep::Move(_) | PlanStep::Play(_) | PlanStep::Planned { .. }))
+    }
+
+    /// True at the start of a move, before any motion.
+    pub fn is_at_start(&self) -> bool {
+        self.moving() && self.time <= 0.0
     }
 
     /// True during a wait.
@@ -297,8 +286,10 @@ impl ProgramClock {
         } else {
             target.min(self.rate + self.max_rate_increase() * dt)
         };
-        // If the rate reaches its target within this tick, the recording follows its rows from the first one.
-        let mean = if self.joins && next >= target { next } else { f64::midpoint(self.rate, next) };
+        // If the rate reaches its target within this tick, the recording follows its rows from the first one. A move that
+        // may not begin does not begin, whatever the rate was before.
+        let keeps_next = (self.joins && next >= target) || (next <= 0.0 && self.is_at_start());
+        let mean = if keeps_next { next } else { f64::midpoint(self.rate, next) };
         self.joins = false;
         self.rate_change = (next - self.rate) / dt;
         self.rate = next;

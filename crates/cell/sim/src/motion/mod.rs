@@ -10,6 +10,7 @@
 mod clock;
 mod geometry;
 mod grip_action;
+mod instant_steps;
 mod line;
 mod plan;
 mod planned_parts;
@@ -17,9 +18,10 @@ mod planned_paths;
 mod program_plan;
 mod segment;
 
-pub use clock::{ProgramClock, RegionSwitch};
+pub use clock::ProgramClock;
 pub use geometry::MovePath;
 pub use grip_action::{GripAction, HeldObjects};
+pub use instant_steps::RegionSwitch;
 pub use line::TcpLine;
 pub use plan::{first_grip, plan, repeated_plan};
 pub use planned_paths::{PathSearch, PlannedPaths};

@@ -30,17 +30,28 @@ impl OverrideDelay {
         self.pending.push_back(PendingOverride { from_s: t_s + self.reaction_s, speed_override });
     }
 
+    /// Drops what was sent and has not taken effect: a controller asks before each step whether it may begin.
+    pub fn drop_sent(&mut self) {
+        self.pending.clear();
+        self.applied = 0.0;
+    }
+
     /// Advances the clock from `t_s` by `dt` seconds, with the override in effect at each moment.
-    pub fn advance(&mut self, clock: &mut ProgramClock, t_s: f64, dt: f64) {
+    ///
+    /// If the controller `asks` before each step, a step that begins within the tick waits for the next one.
+    pub fn advance(&mut self, clock: &mut ProgramClock, t_s: f64, dt: f64, asks: bool) {
         let (mut at_s, end_s) = (t_s, t_s + dt);
+        let path = clock.path_number();
         while let Some(next) = self.pending.front().copied().filter(|next| next.from_s < end_s) {
-            if next.from_s > at_s + 1e-9 {
+            if next.from_s > at_s + 1e-9 && !(asks && clock.path_number() != path) {
                 clock.advance(next.from_s - at_s, self.applied);
                 at_s = next.from_s;
             }
             self.applied = next.speed_override;
             self.pending.pop_front();
         }
-        clock.advance(end_s - at_s, self.applied);
+        if !(asks && clock.path_number() != path) {
+            clock.advance(end_s - at_s, self.applied);
+        }
     }
 }

@@ -59,7 +59,8 @@ impl Simulation<'_> {
     /// Checks the path of a robot, and holds the robot if it must brake for an obstacle or a stale sensor.
     fn keep_clear(&mut self, i: usize, perceived: &PerceivedObstacles<'_>, has_news: bool, t_s: f64) {
         let Self { cell, robots, states, frames, contacts, journal, .. } = self;
-        let SimulatedRobot { id, setup, monitor, clock, guard: Some((guard, _)), hold, .. } = &mut robots[i] else {
+        let SimulatedRobot { id, setup, monitor, clock, guard: Some((guard, _)), hold, delay, .. } = &mut robots[i]
+        else {
             return;
         };
         if guard.is_due(clock.path_number(), has_news) {
@@ -76,6 +77,9 @@ impl Simulation<'_> {
         if let Some((reason, by)) = held.filter(|_| held != before.as_ref()) {
             let event = if *reason == HoldReason::Stale { RunEvent::Stale } else { RunEvent::Wait };
             journal.event(t_s, *id, by, event);
+        }
+        if held.is_some() && clock.is_at_start() {
+            delay.drop_sent();
         }
     }
 

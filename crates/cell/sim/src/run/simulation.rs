@@ -184,12 +184,12 @@ impl Simulation<'_> {
     fn advance(&mut self, t_s: f64) -> Result<(), Diagnostic> {
         let Self { cell, options, robots, states, frames, journal, .. } = self;
         for robot in robots.iter_mut().filter(|robot| !options.is_silent(robot.id, t_s)) {
-            let SimulatedRobot { id, setup, monitor, clock, own_motion, applied, delay, .. } = robot;
+            let SimulatedRobot { id, setup, monitor, clock, own_motion, applied, delay, guard, .. } = robot;
             let avoiding = match own_motion {
                 OwnMotion::Avoiding(avoiding) => avoiding,
                 OwnMotion::None => {
                     delay.send(t_s, *applied);
-                    delay.advance(clock, t_s, cell.timing.tick_s);
+                    delay.advance(clock, t_s, cell.timing.tick_s, guard.is_some());
                     continue;
                 }
                 // All members of a virtual robot move together.

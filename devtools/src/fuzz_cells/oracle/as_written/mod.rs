@@ -8,6 +8,7 @@ mod goals;
 mod regions;
 mod robots;
 mod scenes;
+mod sensors;
 #[cfg(test)]
 mod tests;
 mod written;
@@ -33,6 +34,7 @@ pub fn check(text: &str, cell: &Cell, recording: &Recording, findings: &mut Find
     objects(&file, cell, &mut off);
     grids(&file, cell, &mut off);
     grasps(&file, cell, &mut off);
+    sensors::check(&file, cell, &mut off);
     findings.list.extend(off.into_iter().map(|(table, off)| Finding::Misread { table, off }));
     let arms: Vec<Arm> = cell.robots.iter().map(Arm::new).collect();
     goals::check(&file, cell, recording, &arms, findings);

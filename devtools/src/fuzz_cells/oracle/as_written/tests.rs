@@ -48,6 +48,23 @@ to = [2000, 2100, 2200]
 rpy = [0, 0, 33]
 cells = [2, 2, 2]
 output = 1
+[camera.eye]
+pose = { at = [0, 0, 6000], rpy = [180, 0, 10] }
+size = [64, 48]
+focal_px = [60, 61]
+uncertainty = 50
+area = [[-1000, -1000], [1000, -1000], [0, 900]]
+templates = [{ name = "crate", size = [600, 400], height = 300 }, { name = "drum", diameter = 500, height = 900 }]
+robots = []
+[cloud.mast]
+pose = { at = [0, 0, 5000], rpy = [180, 0, 20] }
+depth = { size = [64, 48], focal_px = 62, step = 2 }
+floor = -100
+voxel = 45
+ceiling = 2500
+to_floor = false
+latency_ms = 70
+robots = []
 [program.a]
 steps = [{ move = "joint", to = [30, 100] }]
 "#;
@@ -89,6 +106,20 @@ fn other_numbers_are_found() {
         ("y = [0, 1, -4001]", "y = [0, 1, -4000]", "region.plane"),
         ("to = [2000, 2100, 2200]", "to = [2000, 2101, 2200]", "grid.g"),
         ("rpy = [0, 0, 33]", "rpy = [0, 0, 34]", "grid.g"),
+        ("rpy = [180, 0, 10]", "rpy = [180, 0, 11]", "camera.eye.pose"),
+        ("focal_px = [60, 61]", "focal_px = [61, 60]", "camera.eye.size"),
+        ("uncertainty = 50", "uncertainty = 51", "camera.eye.uncertainty"),
+        ("[0, 900]", "[0, 901]", "camera.eye.area"),
+        ("size = [600, 400]", "size = [600, 401]", "camera.eye.templates"),
+        ("diameter = 500", "diameter = 501", "camera.eye.templates"),
+        ("rpy = [180, 0, 20]", "rpy = [180, 20, 0]", "cloud.mast.pose"),
+        ("focal_px = 62", "focal_px = 63", "cloud.mast.depth"),
+        ("step = 2", "step = 3", "cloud.mast.step"),
+        ("floor = -100", "floor = 100", "cloud.mast.floor"),
+        ("voxel = 45", "voxel = 46", "cloud.mast.voxel"),
+        ("ceiling = 2500", "ceiling = 2501", "cloud.mast.ceiling"),
+        ("to_floor = false", "to_floor = true", "cloud.mast.to_floor"),
+        ("latency_ms = 70", "latency_ms = 71", "cloud.mast.latency_ms"),
     ];
     for (from, to, expected) in changes {
         let found = findings(from, to);

@@ -33,6 +33,11 @@ impl Written {
         all.filter_map(|(name, value)| Some((name, value.as_table()?)))
     }
 
+    /// A length of the text, m.
+    pub fn metres(&self, length: f64) -> f64 {
+        length * self.length
+    }
+
     /// A length; 0 without its key.
     pub fn length(&self, t: &Table, key: &str) -> f64 {
         t.get(key).and_then(number).unwrap_or(0.0) * self.length
