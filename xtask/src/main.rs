@@ -174,9 +174,8 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
 fn devtools(root: &Path, words: &[&str], profile: &[&str]) -> Result<(), Failure> {
     let run = ["run", "--quiet", "--package", "elbowroom-devtools"];
     let args: Vec<&str> = run.iter().chain(profile).chain(&["--"]).chain(words).copied().collect();
-    let covers = suite::own_covers(root, words);
-    let env: Vec<(&str, &str)> = covers.iter().map(|(name, value)| (*name, value.as_str())).collect();
-    match shell::cargo_status(root, &args, &env)? {
+    let covers = suite::own_covers(root);
+    match shell::cargo_status(root, &args, suite::covers_of(words, &covers).as_slice())? {
         0 => Ok(()),
         2 => Err(Failure::Usage(format!("`{}` is not understood", words.join(" ")))),
         status => Err(Failure::Check(format!("`{}` ended with exit status {status}", words.join(" ")))),

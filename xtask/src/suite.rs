@@ -217,15 +217,20 @@ pub fn announce_data(root: &Path) {
 /// The command `elbowroom` is compiled with it.
 pub fn devtools(root: &Path, words: &[&str]) -> Result<(), String> {
     let program = program(root, "elbowroom-devtools")?;
-    let covers = own_covers(root, words);
-    let env: Vec<(&str, &str)> = covers.iter().map(|(name, value)| (*name, value.as_str())).collect();
-    shell::run(root, &program.to_string_lossy(), words, &env)
+    let covers = own_covers(root);
+    shell::run(root, &program.to_string_lossy(), words, covers_of(words, &covers).as_slice())
 }
 
-/// The environment of a command of `elbowroom-devtools`: random robots must not fill the cache of the user.
-pub fn own_covers(root: &Path, words: &[&str]) -> Option<(&'static str, String)> {
-    let folder = shell::target_folder(root).join("fuzz-covers").display().to_string();
-    (words.first() == Some(&"fuzz")).then_some(("ELBOWROOM_CACHE", folder))
+/// A folder of covers of robots that only tests have: they must not fill the cache of the user.
+pub fn own_covers(root: &Path) -> String {
+    shell::target_folder(root).join("fuzz-covers").display().to_string()
+}
+
+/// The environment of a command of `elbowroom-devtools`, with a folder of covers for random robots.
+pub fn covers_of<'c>(words: &[&str], folder: &'c str) -> Option<(&'static str, &'c str)> {
+    const CACHE: &str = "ELBOWROOM_CACHE";
+    let is_random = words.first() == Some(&"fuzz") && std::env::var_os(CACHE).is_none();
+    is_random.then_some((CACHE, folder))
 }
 
 fn generated(context: &Context) -> Result<(), String> {

@@ -19,7 +19,7 @@ use elbowroom_cell::Cell;
 
 use coverage::{CellKeys, Coverage};
 use generate::{Kind, Places};
-use oracle::Finding;
+use oracle::{Finding, Judged};
 use pictures::PictureFolders;
 use spec::CellSpec;
 use summary::Summary;
@@ -131,6 +131,13 @@ pub fn run(root: &Path, options: &Options) -> Result<(), Failure> {
     }
     if options.count.is_none() {
         coverage.check().map_err(Failure::Check)?;
+        let mut judged = Judged::default();
+        for summary in &summaries {
+            judged.add(&summary.judged);
+        }
+        if !judged.has_all() {
+            return Err(Failure::Check(format!("the oracle judges nothing of a kind of sensor: {judged:?}")));
+        }
     }
     let failed: usize = summaries.iter().map(Summary::failed).sum();
     if failed == 0 { Ok(()) } else { Err(Failure::Check(format!("{failed} cells failed: {}", cells.display()))) }
@@ -249,8 +256,7 @@ fn report(
     let text = small.to_toml();
     let file = places.cells.join(format!("{}-{}-{case}.toml", kind.name(), options.seed));
     let Ok(cell) = small.parse(places.cells) else { return };
-    let Ok(pictures) = PictureFolders::write(&small, places.cells) else { return };
-    pictures.keep();
+    let pictures = PictureFolders::write(&small, places.cells).map(PictureFolders::keep);
     let words = summary::in_words(&finding, &cell);
     let found_by = format!("cargo xtask fuzz cells --kind {} --seed {} --case {case}", kind.name(), options.seed);
     // What was written into a recording, or shown to a sensor, is known only to the generator.
@@ -262,7 +268,8 @@ fn report(
         _ => "cargo xtask fuzz cells --replay FILE, or elbowroom run FILE",
     };
     let head = format!("# {words}\n# Found by: {found_by}\n# Again: {again}\n");
-    if std::fs::write(&file, head + &text).and_then(|()| small.write_files(places.cells)).is_ok() {
+    let written = std::fs::write(&file, head + &text).and_then(|()| small.write_files(places.cells));
+    if written.is_ok() && pictures.is_ok() {
         summary.files.push((file, words));
     }
 }

@@ -8,7 +8,7 @@ use elbowroom_cell::Cell;
 
 use super::checked_run::CheckedRun;
 use super::coverage::Coverage;
-use super::oracle::Finding;
+use super::oracle::{Finding, Judged};
 
 /// Counts of one kind of cells.
 #[derive(Debug, Default)]
@@ -21,9 +21,9 @@ pub struct Summary {
     finished: usize,
     slowed: usize,
     stopped: usize,
-    watched: usize,
     deadlocks: usize,
     unforeseen: usize,
+    pub judged: Judged,
     simulated_s: f64,
     failing: FailingCells,
     pub took: Duration,
@@ -149,9 +149,9 @@ impl Summary {
         self.finished += run.finished;
         self.slowed += run.slowed;
         self.stopped += run.stopped;
-        self.watched += o.watched;
         self.deadlocks += o.deadlocks;
         self.unforeseen += o.unforeseen_entries;
+        self.judged.add(&o.judged);
         self.simulated_s += run.simulated_s;
         self.failing.add(&o.list);
     }
@@ -186,12 +186,13 @@ impl Summary {
             ("cells", self.cells.to_string()),
             ("refused", self.refused.all().to_string()),
             ("simulated s", format!("{:.0}", self.simulated_s)),
-            ("pairs watched", self.watched.to_string()),
+            ("pairs watched", self.judged.watched.to_string()),
             ("robots slowed", share(self.slowed)),
             ("robots stopped", share(self.stopped)),
             ("robots finished", share(self.finished)),
             ("deadlocks", self.deadlocks.to_string()),
             ("unforeseen", self.unforeseen.to_string()),
+            ("boxes judged", self.judged.boxes.map(|n| n.to_string()).join("/")),
             ("took s", format!("{:.1}", self.took.as_secs_f64())),
         ];
         rows.extend(NAMES.iter().map(|name| (*name, self.failing.with(name).to_string())));
@@ -236,6 +237,8 @@ pub fn json(seed: u64, summaries: &[Summary], keys: Option<(&Coverage, &Path)>) 
             "stopped": s.stopped,
             "deadlocks": s.deadlocks,
             "unforeseen_entries": s.unforeseen,
+            "judged_boxes": s.judged.boxes,
+            "judged_stale_ticks": s.judged.stale_ticks,
             "failed": s.failed(),
             "simulated_s": s.simulated_s,
             "took_s": s.took.as_secs_f64(),
@@ -337,7 +340,7 @@ fn joints_in_words(finding: &Finding, cell: &Cell) -> String {
             format!("robot {} moved at {t_s:.4} s although the last picture of its sensor was too old", robot(r))
         }
         Finding::HeldForNothing { robot: r, t_s } => {
-            format!("robot {} was held at {t_s:.4} s for an old picture or an obstacle that there was not", robot(r))
+            format!("robot {} was held at {t_s:.4} s without an old picture or an obstacle", robot(r))
         }
         Finding::Slowed { robot: r, t_s } => format!("mechanism {} was slowed down at {t_s:.4} s", robot(r)),
         Finding::Misread { table, off } => format!("{table}: read otherwise than the file states, by {off:.9}"),

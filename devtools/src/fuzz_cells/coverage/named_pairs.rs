@@ -20,7 +20,7 @@ pub enum Feature {
     Grip,
     Recording,
     Avoidance,
-    /// A camera or a sensor of points that robots avoid the obstacles of.
+    /// A camera or a sensor of points whose obstacles robots avoid.
     Sensor,
     /// Programs that run more than once.
     Repeat,

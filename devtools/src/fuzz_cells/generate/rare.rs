@@ -3,6 +3,7 @@
 use elbowroom_cell::Cell;
 use elbowroom_spatial::Vec3;
 
+use super::planned::MAPPED;
 use super::region::point_on_the_path;
 use super::settings::Places;
 use super::{any_robot, goals};
@@ -175,13 +176,11 @@ pub fn map(spec: &mut CellSpec, random: &mut Random) {
     };
     for (i, robot) in spec.robots.iter().enumerate().filter(|(_, robot)| on_map(robot)) {
         let Some(mut r) = random.rare(0, 1, 50) else { continue };
-        let Model::Dh { has_names, .. } = &robot.model else { continue };
-        let name =
-            |joint: usize| if *has_names { format!("\"axis {joint}\"") } else { format!("\"joint_{}\"", joint + 1) };
+        let names = robot.joint_names();
+        let Some(three) = names.get(..MAPPED) else { continue };
         let steps: [f64; 3] = std::array::from_fn(|_| r.between(0.1, 0.3));
-        let joints = [name(0), name(1), name(2)].join(", ");
         let others = r.one(&["any", "start", "start"]);
-        let lines = [format!("joints = [{joints}]"), format!("step = {steps:?}"), format!("others = \"{others}\"")];
+        let lines = [format!("joints = {three:?}"), format!("step = {steps:?}"), format!("others = \"{others}\"")];
         spec.extras.tables.push(format!("[map.r{i}]\n{}\n", lines.join("\n")));
     }
 }

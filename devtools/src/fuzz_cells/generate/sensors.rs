@@ -4,24 +4,23 @@ use std::f64::consts::PI;
 
 use elbowroom_cell::Cell;
 
+use super::planned::MAPPED;
 use super::region::point_on_the_path;
 use super::robot;
 use super::settings::Places;
 use crate::fuzz_cells::oracle;
 use crate::fuzz_cells::random::{Random, rounded};
 use crate::fuzz_cells::spec::{
-    CellFile, CellSpec, LensSpec, Model, RobotSpec, SeenBox, SensorSpec, SensorView, Vector, list,
+    CellFile, CellSpec, LensSpec, Model, PictureTimes, RobotSpec, SeenBox, SensorSpec, SensorView, Vector, list,
 };
 
-/// Each so many of the first cells have the same kind of sensor; of those with planned moves, half of which are refused,
-/// each so many.
+/// Every 40th of the first cells has the same kind of sensor, and every 8th of those with planned moves, half of which are
+/// refused.
 const OF_SENSORS: [u64; 2] = [40, 8];
 /// The slots of points, depths and cameras among them.
 const SLOTS: [u64; 3] = [2, 5, 7];
 /// Percentage of later cells with each kind of sensor.
 const PERCENT: u32 = 4;
-/// Number of joints of a map.
-const MAPPED: usize = 3;
 /// Tries to make a robot of so many joints, or to find a place for a box.
 const TRIES: usize = 16;
 /// Least distance of most boxes from all robots at the start, m.
@@ -77,18 +76,20 @@ fn sensor(
         0 => (0..random.whole(1, 8)).map(|_| random.whole(learning, times.len() - 1)).collect(),
         _ => Vec::new(),
     };
-    let lines = lines(&boxes, (eye, floor, highest, at), has_all_keys, random);
+    let needed = needed(&boxes, (eye, highest - floor), random);
+    let lines = lines(&boxes, (eye, floor, at), has_all_keys, random);
     let view = match eye {
         Eye::Points => SensorView::Points { spacing: voxel(&boxes) / 2.2, is_ply: random.percent(50) },
         Eye::Depths => SensorView::Depths { lens: DEPTHS, step: random.one(&[0.001, 0.002]) },
         Eye::Camera => SensorView::Camera { lens: CAMERA },
     };
-    let swings = has_all_keys || random.percent(50);
+    // Robots that swing while the empty cell is learnt would hide what is learnt.
+    let swings = (has_all_keys || random.percent(50)) && !boxes.iter().any(|one| one.is_learnt);
     let joints = (learning > 0 && swings).then(|| joints(spec, &times[..learning], random)).flatten();
     let yaw = random.between(-PI, PI);
     let rpy = if eye == Eye::Points { random.vector(3.0) } else { [rounded(PI), 0.0, yaw] };
     // Robots are held when the last picture is old: programs need not end.
-    spec.max_s = spec.max_s.min(last_s + 4.0);
+    spec.max_s = spec.max_s.min(last_s + if random.percent(30) { 4.0 } else { 0.3 });
     Some(SensorSpec {
         name: "above",
         view,
@@ -99,11 +100,10 @@ fn sensor(
         avoiding,
         latency_ms,
         stale_ms: rounded(stale_ms),
-        learning,
-        times,
-        unusable,
+        pictures: PictureTimes { learning, times, unusable },
         boxes,
         joints,
+        needed,
         lines,
     })
 }
@@ -125,17 +125,14 @@ fn mapped_robot(spec: &mut CellSpec, places: &Places<'_>, random: &mut Random) -
     }
     let index = found.unwrap_or(spec.robots.len() - 1);
     let head = format!("[map.r{index}]");
-    if let (false, Model::Dh { rows, has_names, .. }) =
-        (spec.extras.tables.iter().any(|t| t.starts_with(&head)), &spec.robots[index].model)
-    {
-        let name = |j: usize| if *has_names { format!("axis {j}") } else { format!("joint_{}", j + 1) };
-        let joints: Vec<String> = (0..MAPPED).map(name).collect();
+    let Model::Dh { rows, .. } = &spec.robots[index].model else { return None };
+    if !spec.extras.tables.iter().any(|table| table.starts_with(&head)) {
+        let joints = &spec.robots[index].joint_names()[..MAPPED];
         let steps: Vec<f64> =
             rows[..MAPPED].iter().map(|row| rounded((row.max - row.min) / random.between(8.0, 24.0))).collect();
         let others = random.one(&["any", "any", "start"]);
-        spec.extras
-            .tables
-            .push(format!("{head}\njoints = {joints:?}\nstep = {}\nothers = \"{others}\"\n", list(&steps)));
+        let lines = format!("joints = {joints:?}\nstep = {}\nothers = \"{others}\"\n", list(&steps));
+        spec.extras.tables.push(format!("{head}\n{lines}"));
     }
     Some(index)
 }
@@ -211,7 +208,10 @@ fn seen_box(
                 let at = [at[0] - velocity[0] * comes_s, at[1] - velocity[1] * comes_s, at[2]].map(rounded);
                 return Some(SeenBox { at, from_s, to_s: from_s + 2.0 * comes_s + 0.5, velocity, ..standing });
             }
-            2 if can_learn => return Some(SeenBox { is_learnt: true, ..standing }),
+            // Points on robots are not learnt.
+            2 if can_learn && oracle::is_clear_of_box(cell, &standing, CLEAR_M) => {
+                return Some(SeenBox { is_learnt: true, ..standing });
+            }
             _ if random.percent(5) || oracle::is_clear_of_box(cell, &standing, CLEAR_M) => return Some(standing),
             _ => {}
         }
@@ -235,10 +235,25 @@ fn voxel(boxes: &[SeenBox]) -> f64 {
     rounded(longest / 7.0)
 }
 
+/// Lines of the table without which the sensor would not see its boxes, the highest of which ends at a height.
+fn needed(boxes: &[SeenBox], (eye, height): (Eye, f64), random: &mut Random) -> Vec<String> {
+    let (voxel, min_points) = match eye {
+        // A pixel or two.
+        Eye::Camera => return vec![format!("uncertainty = {}", random.between(0.1, 0.2))],
+        Eye::Points => (voxel(boxes), random.whole(1, 2)),
+        Eye::Depths => (0.3, 1),
+    };
+    let ceiling = rounded(height + random.between(0.2, 2.0));
+    vec![
+        format!("voxel = {voxel}\nmin_points = {min_points}\nmin_voxels = {}", random.whole(1, 2)),
+        format!("ceiling = {ceiling}"),
+    ]
+}
+
 /// Lines of the table that any sensor may have.
 fn lines(
     boxes: &[SeenBox],
-    (eye, floor, highest, [x, y, z]): (Eye, f64, f64, Vector),
+    (eye, floor, [x, y, z]): (Eye, f64, Vector),
     has_all_keys: bool,
     random: &mut Random,
 ) -> Vec<String> {
@@ -261,22 +276,15 @@ fn lines(
     some(30, random, &|r| format!("max_speed = {}", r.between(1.5, 6.0)));
     match eye {
         Eye::Camera => {
-            // A pixel or two.
-            some(100, random, &|r| format!("uncertainty = {}", r.between(0.1, 0.2)));
             some(30, random, &|r| format!("mask_margin = {}", r.between(0.0, 0.08)));
             some(20, random, &|r| format!("shadows = {}", r.percent(50)));
             some(40, random, &|r| templates(boxes, r));
         }
         Eye::Points | Eye::Depths => {
-            let voxel = if eye == Eye::Points { voxel(boxes) } else { 0.3 };
-            some(100, random, &|_| format!("voxel = {voxel}"));
-            some(100, random, &|r| format!("min_points = {}", if eye == Eye::Points { r.whole(1, 2) } else { 1 }));
-            some(100, random, &|r| format!("min_voxels = {}", r.whole(1, 2)));
-            some(100, random, &|r| format!("ceiling = {}", rounded(highest - floor + r.between(0.2, 2.0))));
             some(40, random, &|r| format!("floor_thickness = {}", r.between(0.01, 0.15)));
             some(40, random, &|r| format!("mask_margin = {}", r.between(0.0, 0.1)));
             some(40, random, &|r| format!("uncertainty = {}", r.between(0.0, 0.1)));
-            some(40, random, &|r| format!("to_floor = {}", r.percent(50)));
+            some(40, random, &|r| format!("to_floor = {}", r.percent(60)));
         }
     }
     lines
@@ -306,11 +314,10 @@ fn joints(spec: &CellSpec, times: &[f64], random: &mut Random) -> Option<CellFil
     let mut head = String::from("t_s");
     let mut ranges: Vec<(f64, f64)> = Vec::new();
     for (i, robot) in spec.robots.iter().enumerate() {
-        let Model::Dh { rows, has_names, .. } = &robot.model else { return None };
-        for (j, row) in rows.iter().enumerate() {
-            let of_robot = if spec.robots.len() > 1 { format!("r{i}.") } else { String::new() };
-            let name = if *has_names { format!("axis {j}") } else { format!("joint_{}", j + 1) };
-            head.extend([",", &of_robot, &name]);
+        let Model::Dh { rows, .. } = &robot.model else { return None };
+        let of_robot = if spec.robots.len() > 1 { format!("r{i}.") } else { String::new() };
+        for (name, row) in robot.joint_names().iter().zip(rows) {
+            head.extend([",", &of_robot, name]);
             ranges.push((row.min, row.max));
         }
     }

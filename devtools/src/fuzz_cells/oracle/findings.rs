@@ -67,6 +67,29 @@ pub struct Findings {
     pub unforeseen_entries: usize,
     /// Number of sets of robots that wait for one another for ever.
     pub deadlocks: usize,
+    pub judged: Judged,
+}
+
+/// How much was judged.
+#[derive(Debug, Clone, Default)]
+pub struct Judged {
     /// Number of pairs of robot and region that were watched for entry.
     pub watched: usize,
+    /// Number of pairs of robot and box that a sensor sees, for clouds of points, pictures of depths and cameras.
+    pub boxes: [usize; 3],
+    /// Number of ticks of robots at which the last picture was too old.
+    pub stale_ticks: usize,
+}
+
+impl Judged {
+    pub fn add(&mut self, other: &Self) {
+        self.watched += other.watched;
+        self.boxes.iter_mut().zip(other.boxes).for_each(|(all, more)| *all += more);
+        self.stale_ticks += other.stale_ticks;
+    }
+
+    /// Whether every kind of sensor was judged.
+    pub fn has_all(&self) -> bool {
+        self.boxes.iter().all(|boxes| *boxes > 0) && self.stale_ticks > 0
+    }
 }

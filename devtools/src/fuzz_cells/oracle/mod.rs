@@ -32,6 +32,8 @@ mod promises;
 pub mod readings;
 pub mod recorded;
 pub mod seen;
+mod seen_box;
+mod seen_part;
 mod shield;
 mod simplex;
 mod solid;
@@ -43,12 +45,12 @@ mod track;
 mod while_inside;
 
 pub use arm::Arm;
-pub use findings::{Finding, Findings};
+pub use findings::{Finding, Findings, Judged};
 pub use frame::Frame;
 pub use guarded::Guarded;
 pub use guided::is_clear as is_clear_at_start;
 pub use promises::Promises;
-pub use seen::is_clear_of_box;
+pub use seen_box::is_clear_of_box;
 pub use start::start_distance;
 
 use elbowroom_cell::Cell;

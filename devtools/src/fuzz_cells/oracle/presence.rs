@@ -26,7 +26,7 @@ pub fn entries(motion: &OracleMotion<'_>, guarded: &[Vec<Guarded>], promises: &P
                 .map(|g| SweptPair::new(motion, g, robot, region))
                 .filter(SweptPair::is_moved)
                 .collect();
-            findings.watched += usize::from(!pairs.is_empty());
+            findings.judged.watched += usize::from(!pairs.is_empty());
             let watch = Watch { motion, pairs, robot, region };
             // A robot that is never inside breaks no promise.
             let Some((k, u, pair)) = watch.any_touch() else { continue };

@@ -29,9 +29,7 @@ fn depth(floor: f64, boxes: &[(&SeenBox, Vector)], in_world: &Pose, ray: Vec3) -
 
 /// How far along a ray a box begins.
 fn enters(one: &SeenBox, at: Vector, eye: Vec3, ray: Vec3) -> Option<f64> {
-    let (sin, cos) = one.yaw.sin_cos();
-    let turned = |v: Vec3| Vec3::new(cos * v.x + sin * v.y, -sin * v.x + cos * v.y, v.z);
-    let (from, along) = (turned(eye - Vec3::new(at[0], at[1], at[2])), turned(ray));
+    let (from, along) = (one.to_own(eye - Vec3::new(at[0], at[1], at[2])), one.to_own(ray));
     let low = [-0.5 * one.size[0], -0.5 * one.size[1], 0.0];
     let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
     for k in 0..3 {

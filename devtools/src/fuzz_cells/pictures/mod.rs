@@ -49,8 +49,8 @@ fn write_folder(sensor: &SensorSpec, folder: &Path) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let mut times = String::from("file,t_s\n");
     let mut camera = camera::CameraPictures::new(sensor);
-    for (index, t_s) in sensor.times.iter().enumerate() {
-        let is_usable = !sensor.unusable.contains(&index);
+    for (index, t_s) in sensor.pictures.times.iter().enumerate() {
+        let is_usable = !sensor.pictures.unusable.contains(&index);
         let (extension, bytes) = match &sensor.view {
             SensorView::Points { spacing, is_ply } => points::cloud(sensor, index, *spacing, is_usable).file(*is_ply),
             SensorView::Depths { lens, step } => ("pgm", depths::picture(sensor, index, (lens, *step), is_usable)),

@@ -22,11 +22,9 @@ pub fn cloud(sensor: &SensorSpec, index: usize, spacing: f64, is_usable: bool) -
 /// Points of the sides and the top of a box, no farther apart than the spacing along each edge, with its corners.
 fn surface(one: &SeenBox, at: Vector, spacing: f64) -> Vec<Vec3> {
     let steps = one.size.map(|side| (side / spacing).ceil().max(1.0) as usize);
-    let (sin, cos) = one.yaw.sin_cos();
     let place = |i: [usize; 3]| {
         let [x, y, z]: Vector = std::array::from_fn(|k| one.size[k] * i[k] as f64 / steps[k] as f64);
-        let (x, y) = (x - 0.5 * one.size[0], y - 0.5 * one.size[1]);
-        Vec3::new(at[0] + cos * x - sin * y, at[1] + sin * x + cos * y, at[2] + z)
+        one.to_world(at, Vec3::new(x - 0.5 * one.size[0], y - 0.5 * one.size[1], z))
     };
     let mut points = Vec::new();
     for i in 0..=steps[0] {
@@ -74,10 +72,9 @@ mod tests {
         let at = one.at_time(0.5).unwrap();
         assert!(at == [1.25, 2.0, 0.5] && one.at_time(1.5).is_none() && !one.stands());
         let points = surface(&one, at, 0.05);
-        let (sin, cos) = one.yaw.sin_cos();
         for p in &points {
             let d = *p - Vec3::new(at[0], at[1], at[2]);
-            let own = Vec3::new(cos * d.x + sin * d.y, -sin * d.x + cos * d.y, d.z);
+            let own = one.to_own(d);
             let (x, y) = (0.2 - own.x.abs(), 0.1 - own.y.abs());
             assert!(x > -1e-9 && y > -1e-9 && (-1e-9..0.3 + 1e-9).contains(&own.z), "{own:?}");
             assert!(x < 1e-9 || y < 1e-9 || own.z > 0.3 - 1e-9, "{own:?}");

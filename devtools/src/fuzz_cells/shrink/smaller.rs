@@ -96,8 +96,8 @@ fn simpler_sensors(list: &mut Candidates<'_>, sensors: &[SensorSpec]) {
         for line in 0..sensor.lines.len() {
             list.push(|c| drop(c.extras.sensors[i].lines.remove(line)));
         }
-        if !sensor.unusable.is_empty() {
-            list.push(|c| c.extras.sensors[i].unusable.clear());
+        if !sensor.pictures.unusable.is_empty() {
+            list.push(|c| c.extras.sensors[i].pictures.unusable.clear());
         }
         if sensor.joints.is_some() {
             list.push(|c| c.extras.sensors[i].joints = None);

@@ -29,7 +29,7 @@ pub use recording::{RecordingLayout, RecordingSpec};
 pub use region::{BeltSpec, BeltTravel, FollowSpec, PoseRow, RegionSpec};
 pub use robot::{DhRow, GoalSpec, HandSpec, KeepSpec, Model, ProgramSpec, RobotSpec, SolidSpec, StepSpec, ToolSpec};
 pub use scene::{SceneBox, SceneSpec};
-pub use sensor::{LensSpec, SeenBox, SensorSpec, SensorView};
+pub use sensor::{LensSpec, PictureTimes, SeenBox, SensorSpec, SensorView};
 pub use text::{Vector, list};
 
 /// A whole cell; metres, radians, seconds.
@@ -94,7 +94,7 @@ impl CellSpec {
     pub fn parse(&self, folder: &Path) -> Result<Cell, String> {
         self.write_files(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
         let cell = Cell::parse(folder.join("fuzz.toml"), &self.to_toml()).map_err(|e| e.to_string());
-        // The cell has read all of its files.
+        // The cell has read its files; what a run reads is written with the pictures.
         self.files().for_each(|file| drop(std::fs::remove_file(folder.join(file.name))));
         cell
     }

@@ -165,6 +165,13 @@ pub enum StepSpec {
 }
 
 impl RobotSpec {
+    /// Names of the joints of a robot that is written in rows; those of other models are in their files.
+    pub fn joint_names(&self) -> Vec<String> {
+        let Model::Dh { rows, has_names, .. } = &self.model else { return Vec::new() };
+        let name = |j: usize| if *has_names { format!("axis {j}") } else { format!("joint_{}", j + 1) };
+        (0..rows.len()).map(name).collect()
+    }
+
     pub(super) fn write(&self, t: &mut String, index: usize) {
         let _ = writeln!(t, "[robot.r{index}]\nbase = {{ at = {}, rpy = {} }}", list(&self.at), list(&self.rpy));
         match &self.model {

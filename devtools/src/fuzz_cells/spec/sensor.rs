@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-use elbowroom_spatial::Pose;
+use elbowroom_spatial::{Pose, Vec3};
 
 use super::files::CellFile;
 use super::text::{Vector, list};
@@ -23,17 +23,25 @@ pub struct SensorSpec {
     pub avoiding: Vec<usize>,
     pub latency_ms: f64,
     pub stale_ms: f64,
+    pub pictures: PictureTimes,
+    pub boxes: Vec<SeenBox>,
+    /// Joint values while the empty cell is learnt.
+    pub joints: Option<CellFile>,
+    /// Lines of its table that its pictures need.
+    pub needed: Vec<String>,
+    /// Further lines of its table.
+    pub lines: Vec<String>,
+}
+
+/// When a sensor takes pictures.
+#[derive(Debug, Clone)]
+pub struct PictureTimes {
     /// Number of pictures of the empty cell, the first ones.
     pub learning: usize,
     /// Times of the pictures, s.
     pub times: Vec<f64>,
     /// Indices of pictures that cannot be used.
     pub unusable: Vec<usize>,
-    pub boxes: Vec<SeenBox>,
-    /// Joint values while the empty cell is learnt.
-    pub joints: Option<CellFile>,
-    /// Further lines of its table.
-    pub lines: Vec<String>,
 }
 
 /// How a sensor sees.
@@ -80,6 +88,18 @@ impl SeenBox {
         is_there.then(|| [x + moved(self.velocity[0]), y + moved(self.velocity[1]), z])
     }
 
+    /// A point given in its own frame, whose origin is the middle of its lower side, `at`.
+    pub fn to_world(&self, at: Vector, own: Vec3) -> Vec3 {
+        let (sin, cos) = self.yaw.sin_cos();
+        Vec3::new(at[0] + cos * own.x - sin * own.y, at[1] + sin * own.x + cos * own.y, at[2] + own.z)
+    }
+
+    /// A direction of the world in its own frame.
+    pub fn to_own(&self, v: Vec3) -> Vec3 {
+        let (sin, cos) = self.yaw.sin_cos();
+        Vec3::new(cos * v.x + sin * v.y, -sin * v.x + cos * v.y, v.z)
+    }
+
     /// Whether it stands in its place all the time.
     pub fn stands(&self) -> bool {
         self.velocity == [0.0; 2] && self.from_s == f64::NEG_INFINITY && self.to_s == f64::INFINITY
@@ -104,14 +124,14 @@ impl SensorSpec {
 
     /// Whether the picture with this index shows the empty cell.
     pub fn is_learning(&self, index: usize) -> bool {
-        index < self.learning
+        index < self.pictures.learning
     }
 
     /// The boxes in the picture with this index, with the middle of their lower sides.
     pub fn shown(&self, index: usize) -> impl Iterator<Item = (&SeenBox, Vector)> {
         let is_learning = self.is_learning(index);
         let there = self.boxes.iter().filter(move |b| b.is_learnt || !is_learning);
-        there.filter_map(move |b| Some((b, b.at_time(self.times[index])?)))
+        there.filter_map(move |b| Some((b, b.at_time(self.pictures.times[index])?)))
     }
 
     pub(super) fn write(&self, t: &mut String) {
@@ -121,7 +141,7 @@ impl SensorSpec {
         let _ =
             writeln!(t, "floor = {}\nrobot = \"r{}\"\nrobots = {:?}", self.floor, self.mapped, names(&self.avoiding));
         let _ = writeln!(t, "latency_ms = {}\nstale_ms = {}", self.latency_ms, self.stale_ms);
-        let (folder, learning) = (self.folder(), self.learning);
+        let (folder, learning) = (self.folder(), self.pictures.learning);
         match &self.view {
             SensorView::Points { .. } => {
                 let _ = writeln!(t, "clouds = \"{folder}\"\nlearning_clouds = {learning}");
@@ -137,7 +157,7 @@ impl SensorSpec {
         if let Some(joints) = &self.joints {
             let _ = writeln!(t, "joints = \"{}\"", joints.name);
         }
-        self.lines.iter().for_each(|line| t.extend([line, "\n"]));
+        self.needed.iter().chain(&self.lines).for_each(|line| t.extend([line, "\n"]));
         t.push('\n');
     }
 }

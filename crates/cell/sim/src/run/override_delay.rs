@@ -30,7 +30,8 @@ impl OverrideDelay {
         self.pending.push_back(PendingOverride { from_s: t_s + self.reaction_s, speed_override });
     }
 
-    /// Drops what was sent and has not taken effect: a controller asks before each step whether it may begin.
+    /// Drops what was sent and has not taken effect, and holds the robot: a controller that asks before each step whether it may
+    /// begin does not begin with the override of the step before.
     pub fn drop_sent(&mut self) {
         self.pending.clear();
         self.applied = 0.0;
@@ -42,7 +43,7 @@ impl OverrideDelay {
     pub fn advance(&mut self, clock: &mut ProgramClock, t_s: f64, dt: f64, asks: bool) {
         let (mut at_s, end_s) = (t_s, t_s + dt);
         let path = clock.path_number();
-        while let Some(next) = self.pending.front().copied().filter(|next| next.from_s < end_s) {
+        while let Some(next) = self.pending.front().copied().filter(|next| next.from_s < end_s - 1e-9) {
             if next.from_s > at_s + 1e-9 && !(asks && clock.path_number() != path) {
                 clock.advance(next.from_s - at_s, self.applied);
                 at_s = next.from_s;

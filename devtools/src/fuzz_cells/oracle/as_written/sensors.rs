@@ -58,8 +58,15 @@ fn sensor(file: &Written, what: &str, t: &Table, read: &CellSensor, off: &mut Of
                 ("min_voxels", plain(t, "min_voxels"), f64::from(settings.min_voxels)),
                 ("to_floor", flag(t, "to_floor"), f64::from(u8::from(settings.extend_to_floor))),
             ]);
-            if let (Some(lens), Some((camera, step_m))) = (t.get("depth").and_then(Value::as_table), depth) {
-                values.extend([("depth", Some(0.0), lens_off(lens, camera)), ("step", length(lens, "step"), *step_m)]);
+            match (t.get("depth").and_then(Value::as_table), depth) {
+                (Some(lens), Some((camera, step_m))) => {
+                    values.extend([
+                        ("depth", Some(0.0), lens_off(lens, camera)),
+                        ("step", length(lens, "step"), *step_m),
+                    ]);
+                }
+                (None, None) => {}
+                _ => off.push((format!("{what}.depth"), f64::INFINITY)),
             }
         }
     }
@@ -108,9 +115,11 @@ fn lens_off(t: &Table, read: &Camera) -> f64 {
     let middle =
         pair(if t.contains_key("center_px") { "center_px" } else { "centre_px" }, [0.5 * size[0], 0.5 * size[1]]);
     let focal = pair("focal_px", [f64::NAN; 2]);
-    let written = [size, focal, middle].concat();
-    let read = [lens.width as f64, lens.height as f64, lens.fx, lens.fy, lens.cx, lens.cy];
-    let by = written.iter().zip(read).map(|(a, b)| (a - b).abs());
+    let mut radial = t.get("distortion").and_then(numbers).unwrap_or_default();
+    radial.resize(3, 0.0);
+    let written = [size, focal, middle, radial].concat();
+    let size = [lens.width as f64, lens.height as f64, lens.fx, lens.fy, lens.cx, lens.cy];
+    let by = written.iter().zip(size.iter().chain(&lens.radial)).map(|(a, b)| (a - b).abs());
     // A number that is missing is a difference.
     by.fold(0.0, |most: f64, by| if by.is_nan() { f64::INFINITY } else { most.max(by) })
 }
