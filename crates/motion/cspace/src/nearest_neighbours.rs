@@ -6,7 +6,7 @@
 
 use std::sync::OnceLock;
 
-use fearless_simd::{Level as SimdLevel, Simd, dispatch, f32x16, prelude::*};
+use elbowroom_validity::lanes::simd::{Level as SimdLevel, Simd, dispatch, f32x16, prelude::*};
 
 const LANES: usize = 16;
 

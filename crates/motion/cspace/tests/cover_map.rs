@@ -246,6 +246,11 @@ fn no_collision_of_random_robots_lies_in_a_free_cell() {
         let grid = grid(&case);
         let found = map(&case, CoverMapSettings::default());
         touched += usize::from(compare(&case, &grid, &found, 4000) > 0);
+        let on_cores = |cores: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(cores).build().unwrap();
+            pool.install(|| map(&case, CoverMapSettings::default()))
+        };
+        assert!([1, 3].into_iter().all(|cores| on_cores(cores).iter().eq(found.iter())), "another map on other cores");
     }
     assert!(touched * 3 >= rounds, "{touched} of {rounds}");
 }

@@ -8,7 +8,7 @@
 
 use elbowroom_cspace::{Grid, GridAxis, PlanarArm};
 use elbowroom_spatial::Vec3;
-use fearless_simd::{Level as SimdLevel, dispatch};
+use elbowroom_validity::lanes::simd::{Level as SimdLevel, dispatch};
 
 type V = [f32; 3];
 

@@ -1,6 +1,6 @@
 //! Constants of one arm and one grid.
 
-use fearless_simd::Level as SimdLevel;
+use elbowroom_validity::lanes::simd::Level as SimdLevel;
 
 use super::simd_math::WIDTH;
 use crate::{Grid, GridAxis, PlanarArm};

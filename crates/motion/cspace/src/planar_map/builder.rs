@@ -125,7 +125,7 @@ mod tests {
 
     use elbowroom_proximity::ConvexHull;
     use elbowroom_spatial::{Pose, Vec3};
-    use fearless_simd::Level as SimdLevel;
+    use elbowroom_validity::lanes::simd::Level as SimdLevel;
 
     use super::*;
     use crate::GridAxis;

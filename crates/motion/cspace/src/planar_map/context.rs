@@ -1,7 +1,7 @@
 //! Constants of one convex obstacle for all planes, and the outlines of one plane.
 
 use elbowroom_spatial::Vec3;
-use fearless_simd::Level as SimdLevel;
+use elbowroom_validity::lanes::simd::Level as SimdLevel;
 
 use super::arm_grid::{ArmDirections, ArmGrid, half_arc};
 use super::normals::{OutlineNormals, PADDED_NORMALS};

@@ -1,6 +1,6 @@
 //! Tests of single lines and corners for the elbows of sixteen rows.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, mask32x16};
+use elbowroom_validity::lanes::simd::{Simd, SimdBase, SimdMask, mask32x16};
 
 use super::context::Outlines;
 use super::row_culling::LineBits;

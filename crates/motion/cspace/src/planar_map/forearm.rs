@@ -9,7 +9,7 @@
 //! of the wrist contains an angle at which the forearm touches, or the wrist has only one arc (the part of the disk
 //! near a convex outline is convex).
 
-use fearless_simd::{Select, Simd, SimdBase, SimdMask};
+use elbowroom_validity::lanes::simd::{Select, Simd, SimdBase, SimdMask};
 
 use super::context::{ConvexContext, Outlines};
 use super::corner_tests::{CornerTests, Mask, Points};

@@ -1,6 +1,6 @@
 //! Kernels: distances of an outline's lines from the shoulder.
 
-use fearless_simd::{Select, Simd, SimdBase, dispatch};
+use elbowroom_validity::lanes::simd::{Select, Simd, SimdBase, dispatch};
 
 use super::context::ConvexContext;
 use super::normals::{OutlineNormals, PADDED_NORMALS};

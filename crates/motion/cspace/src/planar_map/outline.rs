@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use fearless_simd::{Level as SimdLevel, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch, mask32x16};
+use elbowroom_validity::lanes::simd::{
+    Level as SimdLevel, Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch, mask32x16,
+};
 
 use super::half_planes;
 use super::normals::{OutlineNormals, PADDED_NORMALS};

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use elbowroom_proximity::ConvexHull;
 use elbowroom_spatial::{Pose, Vec3};
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat};
+use elbowroom_validity::lanes::simd::{Select, Simd, SimdBase, SimdFloat};
 
 use super::simd_math::{Lanes, mad, splat};
 

@@ -4,7 +4,7 @@
 //! whole arc, and most corners are within reach of the forearm for the whole arc or never. Only the other lines and
 //! corners are evaluated row by row.
 
-use fearless_simd::{Simd, SimdBase, SimdMask};
+use elbowroom_validity::lanes::simd::{Simd, SimdBase, SimdMask};
 
 use super::context::{ConvexContext, Outlines};
 use super::simd_math::{Lanes, WIDTH, load, splat};
@@ -22,7 +22,7 @@ impl LineBits {
         Self { bits: 0, count: count as u32 }
     }
 
-    fn push<S: Simd>(&mut self, at: usize, mask: fearless_simd::mask32x16<S>) {
+    fn push<S: Simd>(&mut self, at: usize, mask: elbowroom_validity::lanes::simd::mask32x16<S>) {
         self.bits |= mask.to_bitmask() << at;
     }
 

@@ -1,6 +1,6 @@
 //! Kernel that converts the outlines of one plane to spans of its rows.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
+use elbowroom_validity::lanes::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
 
 use super::arc_intervals;
 use super::context::{ConvexContext, Outlines, PlaneRows};

@@ -2,7 +2,7 @@
 //!
 //! Multiplications and additions are not fused, so that the result does not depend on the instruction set.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x16};
+use elbowroom_validity::lanes::simd::{Select, Simd, SimdBase, SimdFloat, f32x16};
 
 /// Sixteen numbers.
 pub(crate) type Lanes<S> = f32x16<S>;
@@ -84,7 +84,7 @@ pub(super) fn acos<S: Simd>(simd: S, cosine: Lanes<S>) -> Lanes<S> {
 
 #[cfg(test)]
 mod tests {
-    use fearless_simd::{Level as SimdLevel, dispatch, prelude::*};
+    use elbowroom_validity::lanes::simd::{Level as SimdLevel, dispatch, prelude::*};
 
     use super::*;
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdMask, i32x16, mask32x16};
+use elbowroom_validity::lanes::simd::{Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdMask, i32x16, mask32x16};
 
 use super::simd_math::{ANGLE_ERROR, Lanes, splat};
 use crate::{GridAxis, Layer, RowSpan};

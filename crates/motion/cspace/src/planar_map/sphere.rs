@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use elbowroom_spatial::Vec3;
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
+use elbowroom_validity::lanes::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, dispatch};
 
 use super::arm_grid::{ArmDirections, ArmGrid, half_arc};
 use super::precision::MARGIN;

@@ -5,7 +5,7 @@
 //! wedge (the wedge's points have `t·x ± y ≥ 0`). The least of these bounds is the support distance itself (convex
 //! duality). Therefore an early stop or a rounding error only enlarges the outline.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+use elbowroom_validity::lanes::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 use super::plane_solid::{LinearPiece, PlaneSolid, TiltedDirections};
 use super::simd_math::{Lanes, mad, splat};
@@ -59,7 +59,11 @@ impl<S: Simd> BallSupport<S> {
 }
 
 #[inline(always)]
-fn select<S: Simd>(which: fearless_simd::mask32x16<S>, yes: LinearPiece<S>, no: LinearPiece<S>) -> LinearPiece<S> {
+fn select<S: Simd>(
+    which: elbowroom_validity::lanes::simd::mask32x16<S>,
+    yes: LinearPiece<S>,
+    no: LinearPiece<S>,
+) -> LinearPiece<S> {
     LinearPiece { at: which.select(yes.at, no.at), slope: which.select(yes.slope, no.slope) }
 }
 
@@ -125,7 +129,7 @@ fn tilted_bound<S: Simd, B: PlaneSolid>(
 #[cfg(test)]
 mod tests {
     use elbowroom_spatial::{Pose, Vec3};
-    use fearless_simd::{Level as SimdLevel, dispatch, prelude::*};
+    use elbowroom_validity::lanes::simd::{Level as SimdLevel, dispatch, prelude::*};
 
     use super::*;
     use crate::planar_map::plane_solid::PlaneBox;

@@ -1,6 +1,6 @@
 //! The wrist's sphere and its outline, sixteen rows at a time.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
+use elbowroom_validity::lanes::simd::{Select, Simd, SimdBase, SimdFloat, SimdMask};
 
 use super::context::{ConvexContext, Outlines};
 use super::corner_tests::{CornerTests, Mask, Points};

@@ -1,10 +1,13 @@
 //! Boxes of joint space, halved until each is free or blocked.
 
+use std::ops::Range;
+
+use elbowroom_validity::lanes::simd::{Level as SimdLevel, SimdBase, dispatch};
 use elbowroom_validity::lanes::{LANES, detected_simd_level};
-use fearless_simd::{Level as SimdLevel, SimdBase, dispatch};
+use rayon::prelude::*;
 
 use super::axis_roles::AxisRoles;
-use super::cell_bits::{CellBits, CellBox};
+use super::cell_bits::{CellBits, CellBox, CellRows};
 use super::cover_class::CoverClass;
 use super::group_test::{BoxTest, NearGroup};
 use super::kernel::{GroupPlace, HalfWidths, Target, gaps};
@@ -25,7 +28,29 @@ struct Boxes {
     probes: u32,
 }
 
-/// Fills the map of one obstacle.
+/// Size of the parts that cores work on: the least level of boxes that a strip is divided from.
+const STRIP_LEVEL: usize = 3;
+
+/// Fills the map of one obstacle, on all cores.
+pub(super) fn fill(obstacle: &ObstacleLanes<'_>, classes: &[CoverClass], roles: AxisRoles, first: &Step) -> CellBits {
+    let mut bits = CellBits::new(roles);
+    for (number, class) in classes.iter().enumerate() {
+        let top = class.levels.len() - 1;
+        let divide = |rows: CellRows<'_>, level: usize, blocks: Range<usize>| {
+            BoxDivision::new(obstacle, classes, roles, first, rows).run(number, level, blocks);
+        };
+        if class.uses[0] {
+            let level = top.min(STRIP_LEVEL);
+            let strips = bits.strips(1 << level).enumerate();
+            strips.for_each(|(strip, rows)| divide(rows, level, strip..strip + 1));
+        } else {
+            divide(bits.all(), top, 0..1);
+        }
+    }
+    bits
+}
+
+/// Divides the boxes of some rows of the map of one obstacle.
 pub(super) struct BoxDivision<'a> {
     obstacle: &'a ObstacleLanes<'a>,
     classes: &'a [CoverClass],
@@ -40,11 +65,17 @@ pub(super) struct BoxDivision<'a> {
     open: Vec<NearGroup>,
     places: PlaceMemo,
     witnesses: Vec<Witnesses>,
-    pub bits: CellBits,
+    bits: CellRows<'a>,
 }
 
 impl<'a> BoxDivision<'a> {
-    pub fn new(obstacle: &'a ObstacleLanes<'a>, classes: &'a [CoverClass], roles: AxisRoles, first: &'a Step) -> Self {
+    pub fn new(
+        obstacle: &'a ObstacleLanes<'a>,
+        classes: &'a [CoverClass],
+        roles: AxisRoles,
+        first: &'a Step,
+        bits: CellRows<'a>,
+    ) -> Self {
         Self {
             obstacle,
             classes,
@@ -56,24 +87,22 @@ impl<'a> BoxDivision<'a> {
             open: Vec::new(),
             places: PlaceMemo::default(),
             witnesses: Vec::new(),
-            bits: CellBits::new(roles),
+            bits,
         }
     }
 
-    /// Fills the map, class by class.
-    pub fn run(&mut self) {
-        for (number, class) in self.classes.iter().enumerate() {
-            self.places.start(class);
-            self.witnesses = Witnesses::none(class);
-            let level = class.levels.len() - 1;
-            let blocks = class.levels[level].blocks;
-            for others in (0..blocks[0]).flat_map(|i| (0..blocks[1]).map(move |j| [i, j])) {
-                for group in 0..self.obstacle.poses[level].len().div_ceil(LANES) {
-                    self.pairs.clear();
-                    let pair = |&group: &u32| NearGroup { group, element: 0, boxes: 0xffff, balls: 0xffff };
-                    self.pairs.extend(class.roots.iter().map(pair));
-                    self.divide(number, Boxes { level, others, group, probes: !0 }, 0);
-                }
+    /// Divides the boxes of a level with these indices on the first of the two other axes.
+    fn run(&mut self, number: usize, level: usize, blocks: Range<usize>) {
+        let class = &self.classes[number];
+        self.places.start(class);
+        self.witnesses = Witnesses::none(class);
+        let second = class.levels[level].blocks[1];
+        for others in blocks.flat_map(|i| (0..second).map(move |j| [i, j])) {
+            for group in 0..self.obstacle.poses[level].len().div_ceil(LANES) {
+                self.pairs.clear();
+                let pair = |&group: &u32| NearGroup { group, element: 0, boxes: 0xffff, balls: 0xffff };
+                self.pairs.extend(class.roots.iter().map(pair));
+                self.divide(number, Boxes { level, others, group, probes: !0 }, 0);
             }
         }
     }

@@ -13,7 +13,8 @@ use super::super::error::RobotMapError;
 use super::super::placed_obstacle::PlacedObstacle;
 use super::super::rigid_groups::{RigidGroup, RigidGroups};
 use super::axis_roles::AxisRoles;
-use super::box_division::BoxDivision;
+use super::box_division::{self, BoxDivision};
+use super::cell_bits::CellBits;
 use super::cover_class::{CoverClass, CoveredGroup, classes};
 use super::obstacle::CoverObstacle;
 use super::obstacle_lanes::ObstacleLanes;
@@ -184,9 +185,7 @@ impl CoverMapBuilder {
         }
         let Some(first) = self.steps.steps.first() else { return Ok(Layer::new()) };
         let lanes = ObstacleLanes::new(obstacle, in_world, first, &self.classes, &self.grid, &self.roles);
-        let mut division = BoxDivision::new(&lanes, &self.classes, self.roles, first);
-        division.run();
-        Ok(division.bits.to_layer(self.grid.shape()))
+        Ok(box_division::fill(&lanes, &self.classes, self.roles, first).to_layer(self.grid.shape()))
     }
 
     /// Computes the cells that [`ObstacleModel::Slices`] of a solid block: one slice, without the joint nearest the
@@ -233,7 +232,8 @@ impl CoverMapBuilder {
         let shape = self.grid.shape();
         let Some(first) = self.steps.steps.first() else { return Ok(expand(shape, [], |_| false)) };
         let lanes = ObstacleLanes::new(obstacle, in_world, first, &self.classes, &self.grid, &self.roles);
-        let mut division = BoxDivision::new(&lanes, &self.classes, self.roles, first);
+        let mut bits = CellBits::new(self.roles);
+        let mut division = BoxDivision::new(&lanes, &self.classes, self.roles, first, bits.all());
         let counts = self.roles.counts;
         let seeds = seeds(&mut division, counts);
         // Cells beyond one turn repeat the cells of the turn.

@@ -1,5 +1,7 @@
 //! Blocked cells as bits during the computation of a layer: a row of bits along the axis in lanes.
 
+use rayon::prelude::*;
+
 use super::axis_roles::AxisRoles;
 use crate::bits::{for_each_run, set_range};
 use crate::{Layer, RowSpan};
@@ -26,19 +28,21 @@ impl CellBits {
         Self { roles, words_per_row, words: vec![0; first * second * words_per_row] }
     }
 
-    /// Sets cells; ignores cells beyond the axes.
-    pub fn set(&mut self, cells: &CellBox) {
-        let counts = self.roles.other_counts();
-        let last = cells.lanes[1].min(self.roles.lane_count());
-        if cells.lanes[0] >= last {
-            return;
-        }
-        for i in cells.others[0][0]..cells.others[0][1].min(counts[0]) {
-            for j in cells.others[1][0]..cells.others[1][1].min(counts[1]) {
-                let row = self.row_mut([i, j]);
-                set_range(row, cells.lanes[0] as u16, last as u16 - 1);
-            }
-        }
+    /// All rows.
+    pub fn all(&mut self) -> CellRows<'_> {
+        let rows = self.roles.other_counts()[0];
+        CellRows { roles: self.roles, words_per_row: self.words_per_row, rows: [0, rows], words: &mut self.words }
+    }
+
+    /// The rows in strips of so many values of the first of the two other axes, each for one thread.
+    pub fn strips(&mut self, size: usize) -> impl IndexedParallelIterator<Item = CellRows<'_>> {
+        let Self { roles, words_per_row, words } = self;
+        let (roles, words_per_row, [first, second]) = (*roles, *words_per_row, roles.other_counts());
+        let strips = words.par_chunks_mut(size * second * words_per_row).enumerate();
+        strips.map(move |(strip, words)| {
+            let rows = [strip * size, ((strip + 1) * size).min(first)];
+            CellRows { roles, words_per_row, rows, words }
+        })
     }
 
     /// Sets the same cells of the axis in lanes in a box of the two other axes; ends are excluded, cells beyond the
@@ -50,19 +54,6 @@ impl CellBits {
                 self.row_mut([i, j]).iter_mut().zip(lanes).for_each(|(word, add)| *word |= add);
             }
         }
-    }
-
-    /// Sets some of sixteen cells of a row, all within the axis.
-    #[inline]
-    pub fn set_sixteen(&mut self, others: [usize; 2], group: usize, lanes: u32) {
-        self.row_mut(others)[group / 4] |= u64::from(lanes) << (16 * (group % 4));
-    }
-
-    /// Returns, for sixteen cells of a row, whether they are set.
-    #[inline]
-    pub fn sixteen(&self, [i, j]: [usize; 2], group: usize) -> u32 {
-        let row = (i * self.roles.other_counts()[1] + j) * self.words_per_row;
-        (self.words[row + group / 4] >> (16 * (group % 4))) as u32 & 0xffff
     }
 
     #[inline]
@@ -133,6 +124,51 @@ impl CellBits {
     }
 }
 
+/// Rows of bits for some values of the first of the two other axes.
+#[derive(Debug)]
+pub(super) struct CellRows<'b> {
+    roles: AxisRoles,
+    words_per_row: usize,
+    /// First value and the one after the last.
+    rows: [usize; 2],
+    words: &'b mut [u64],
+}
+
+impl CellRows<'_> {
+    /// Sets cells; ignores cells beyond the axes, and other rows.
+    pub fn set(&mut self, cells: &CellBox) {
+        let last = cells.lanes[1].min(self.roles.lane_count());
+        if cells.lanes[0] >= last {
+            return;
+        }
+        for i in cells.others[0][0].max(self.rows[0])..cells.others[0][1].min(self.rows[1]) {
+            for j in cells.others[1][0]..cells.others[1][1].min(self.roles.other_counts()[1]) {
+                let row = self.row([i, j]);
+                set_range(&mut self.words[row..row + self.words_per_row], cells.lanes[0] as u16, last as u16 - 1);
+            }
+        }
+    }
+
+    /// Sets some of sixteen cells of a row, all within the axis.
+    #[inline]
+    pub fn set_sixteen(&mut self, others: [usize; 2], group: usize, lanes: u32) {
+        let row = self.row(others);
+        self.words[row + group / 4] |= u64::from(lanes) << (16 * (group % 4));
+    }
+
+    /// Returns, for sixteen cells of a row, whether they are set.
+    #[inline]
+    pub fn sixteen(&self, others: [usize; 2], group: usize) -> u32 {
+        (self.words[self.row(others) + group / 4] >> (16 * (group % 4))) as u32 & 0xffff
+    }
+
+    /// Where a row begins.
+    #[inline]
+    fn row(&self, [i, j]: [usize; 2]) -> usize {
+        ((i - self.rows[0]) * self.roles.other_counts()[1] + j) * self.words_per_row
+    }
+}
+
 /// Transposes 64 × 64 bits: exchanges bit `j` of word `i` with bit `i` of word `j` (Warren, *Hacker's Delight*, 7-3).
 fn transpose(block: &mut [u64; 64]) {
     let (mut width, mut mask) = (32, 0x0000_0000_ffff_ffff_u64);
@@ -188,7 +224,7 @@ mod tests {
             let cells = [[0, 0, 0], [69, 65, 129], [3, 64, 65], [3, 64, 66], [68, 1, 63], [20, 30, 40]];
             for cell in cells {
                 let others = roles.others.map(|axis| cell[axis]);
-                bits.set_sixteen(others, cell[lanes] / 16, 1 << (cell[lanes] % 16));
+                bits.all().set_sixteen(others, cell[lanes] / 16, 1 << (cell[lanes] % 16));
             }
             let mut found = Vec::new();
             for span in bits.to_layer([70, 66, 130]).spans() {

@@ -1,7 +1,7 @@
 //! Test of sixteen boxes of joint space against the groups of balls that may be near in them.
 
+use elbowroom_validity::lanes::simd::Simd;
 use elbowroom_validity::lanes::{LANES, splat};
-use fearless_simd::Simd;
 
 use super::ball_tree::LEAF;
 use super::block_level::Frame;

@@ -6,8 +6,8 @@
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
+use elbowroom_validity::lanes::simd::{Simd, f32x16, prelude::*};
 use elbowroom_validity::lanes::{PointRow, V3, splat};
-use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block_level::Frame;
 use super::cover_class::{CoverGroup, CoverPath, GroupMotion};

@@ -1,6 +1,6 @@
 //! Memory of the places of groups of balls in the current box: they are equal for all values of the axis in lanes.
 
-use fearless_simd::Simd;
+use elbowroom_validity::lanes::simd::Simd;
 
 use super::block_level::Frame;
 use super::cover_class::CoverClass;

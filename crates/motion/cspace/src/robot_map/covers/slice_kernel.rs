@@ -8,8 +8,8 @@
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
+use elbowroom_validity::lanes::simd::{Select, Simd, f32x16, prelude::*};
 use elbowroom_validity::lanes::{LANES, Row, splat};
-use fearless_simd::{Select, Simd, f32x16, prelude::*};
 
 use super::cover_class::{CoverGroup, GroupMotion};
 use super::kernel::GroupPlace;

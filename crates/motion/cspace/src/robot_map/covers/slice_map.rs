@@ -10,8 +10,8 @@ use std::f64::consts::{PI, TAU};
 
 use elbowroom_proximity::Shape;
 use elbowroom_spatial::Pose;
+use elbowroom_validity::lanes::simd::{Level as SimdLevel, Simd, dispatch};
 use elbowroom_validity::lanes::{Row, detected_simd_level};
-use fearless_simd::{Level as SimdLevel, Simd, dispatch};
 
 use super::super::sector_bounds::SectorBounds;
 use super::axis_roles::AxisRoles;

@@ -2,8 +2,8 @@
 
 #![allow(clippy::inline_always, reason = "a kernel is compiled for each instruction set as a whole")]
 
+use elbowroom_validity::lanes::simd::{Select, Simd, f32x16, prelude::*};
 use elbowroom_validity::lanes::{Fused, V3, splat};
-use fearless_simd::{Select, Simd, f32x16, prelude::*};
 
 /// A solid in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
