@@ -1,14 +1,16 @@
 //! Collision of two meshes: finds one pair of triangles that touch, or all pairs.
 
 use elbowroom_spatial::Pose;
+use fearless_simd::dispatch;
 
 use super::containment::contained_point;
 use super::cutoff::Cutoff;
-use super::leaf_kernel::{LeafPair, touching_pairs};
+use super::leaf_kernel::{LeafPair, PairMask, touching_pairs};
 use super::leaf_pairs::visit_leaf_pairs;
 use super::mesh_features::MeshFeatures;
 use super::mesh_pair::MeshPair;
-use super::node_pair::NodePair;
+use super::node_kernel::{INTERSECTION, expand_in};
+use super::node_pair::{NodePair, NodePairStack};
 use super::relative_placement::{RelativePlacement, spheres_farther_than};
 use super::triangle_batch::{TriangleBatch, corners_in_a, robust_closest_points};
 use super::workspace::{QueryStats, Workspace};
@@ -124,23 +126,32 @@ impl CollisionTraversal<'_> {
         let cutoff = Cutoff::new(meshes.placement.f64_error, meshes.placement);
         let Workspace { stack, batch, stats, .. } = workspace;
         batch.clear();
-        let visit = |pair: &NodePair, stats: &mut QueryStats| self.visit_leaves(pair, &cutoff, batch, stats);
-        if visit_leaf_pairs(meshes, &cutoff, stack, stats, |_| true, visit) {
+        // Selected once for the whole traversal: a call per pair of nodes would cost an eighth of it.
+        let has_ended = dispatch!(meshes.simd_level, simd => {
+            let expand = |pair: &NodePair, stack: &mut NodePairStack| {
+                expand_in::<_, INTERSECTION>(simd, meshes, pair, pair.expanded_sides(), &cutoff, stack)
+            };
+            visit_leaf_pairs(meshes, expand, stack, stats, |_| true, |pair, stats| {
+                let leaves = LeafPair { a: pair.a as usize, b: pair.b as usize };
+                let left = touching_pairs(simd, meshes, leaves, &cutoff);
+                !left.is_empty() && self.visit_triangles(pair, left, batch, stats)
+            })
+        });
+        if has_ended {
             return true;
         }
         self.measure(batch, stats)
     }
 
     /// Visits pairs of triangles of two leaves. Pairs that cross are found at once; the others are measured in batches.
-    fn visit_leaves(
+    fn visit_triangles(
         &mut self,
         pair: &NodePair,
-        cutoff: &Cutoff,
+        left: PairMask,
         batch: &mut TriangleBatch,
         stats: &mut QueryStats,
     ) -> bool {
         let MeshPair { a, b, placement, .. } = *self.meshes;
-        let left = touching_pairs(self.meshes, LeafPair { a: pair.a as usize, b: pair.b as usize }, cutoff);
         for (i, j) in left.lanes() {
             let (slot_a, slot_b) = (pair.a * LEAF_SIZE as u32 + i, pair.b * LEAF_SIZE as u32 + j);
             let (ta, tb) = (a.bvh.triangle(slot_a), b.bvh.triangle(slot_b));

@@ -2,7 +2,7 @@
 
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 use elbowroom_testkit::random::Random;
-use fearless_simd::Level as SimdLevel;
+use fearless_simd::{Level as SimdLevel, dispatch};
 
 use super::cutoff::{Cutoff, WitnessFrame};
 use super::leaf_kernel::{LeafIntervals, LeafPair, PairMask, pairs_within, touching_pairs};
@@ -207,7 +207,8 @@ fn check_leaves(meshes: &MeshPair, pair: &NodePair, cutoff: &Cutoff, radius: f64
     let MeshPair { a, b, placement, .. } = *meshes;
     let leaves = LeafPair { a: pair.a as usize, b: pair.b as usize };
     let mut intervals = LeafIntervals::UNKNOWN;
-    let left = pairs_within(meshes, leaves, cutoff, &mut intervals).0 & touching_pairs(meshes, leaves, cutoff).0;
+    let touching = dispatch!(meshes.simd_level, simd => touching_pairs(simd, meshes, leaves, cutoff));
+    let left = pairs_within(meshes, leaves, cutoff, &mut intervals).0 & touching.0;
     let mut decided = 0;
     for (i, j) in PairMask(leaves.all(meshes).0 & !left).lanes() {
         let slot = |leaf: u32, lane: u32| leaf * LEAF_SIZE as u32 + lane;

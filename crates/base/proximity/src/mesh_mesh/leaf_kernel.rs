@@ -83,14 +83,13 @@ fn by_descent<S: Simd>(
 }
 
 /// The pairs of triangles that may touch.
-pub(super) fn touching_pairs(meshes: &MeshPair, leaves: LeafPair, cutoff: &Cutoff) -> PairMask {
+#[inline(always)]
+pub(super) fn touching_pairs<S: Simd>(simd: S, meshes: &MeshPair, leaves: LeafPair, cutoff: &Cutoff) -> PairMask {
     let (a, b) = leaves.leaves(meshes);
     let all = leaves.all(meshes);
-    dispatch!(meshes.simd_level, simd => {
-        let (of_a, of_b) = (load_corners(simd, &a.corner), triangles_in_a(simd, b, meshes.placement));
-        let left = by_boxes(simd, &of_a, &of_b, cutoff, all);
-        if left.is_empty() { left } else { by_normals(simd, &of_a, &of_b, a, cutoff, left) }
-    })
+    let (of_a, of_b) = (load_corners(simd, &a.corner), triangles_in_a(simd, b, meshes.placement));
+    let left = by_boxes(simd, &of_a, &of_b, cutoff, all);
+    if left.is_empty() { left } else { by_normals(simd, &of_a, &of_b, a, cutoff, left) }
 }
 
 /// For every triangle of A, the triangle of B with the smallest lower bound.

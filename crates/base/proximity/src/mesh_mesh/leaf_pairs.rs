@@ -1,18 +1,16 @@
 //! Traversal of two trees down to the pairs of leaves that may be within a cutoff.
 
-use super::cutoff::Cutoff;
 use super::mesh_pair::MeshPair;
-use super::node_kernel::{INTERSECTION, expand};
 use super::node_pair::{NodePair, NodePairStack};
 use super::workspace::QueryStats;
 
 /// Calls `visit` with each pair of leaves that may be within the cutoff until it returns true, and returns whether it did.
 ///
-/// `keep` returns false for pairs of nodes and leaves that need no visit.
+/// `expand` pushes the pairs of children that may be within it, and returns the number of its tests. `keep` returns false for pairs of nodes and leaves that need no visit.
 #[inline(always)]
 pub(super) fn visit_leaf_pairs(
     meshes: &MeshPair,
-    cutoff: &Cutoff,
+    expand: impl Fn(&NodePair, &mut NodePairStack) -> u32,
     stack: &mut NodePairStack,
     stats: &mut QueryStats,
     keep: impl Fn(&NodePair) -> bool,
@@ -31,7 +29,7 @@ pub(super) fn visit_leaf_pairs(
             }
         } else {
             stats.nodes += 1;
-            stats.boxes += expand::<INTERSECTION>(meshes, &pair, cutoff, stack);
+            stats.boxes += expand(&pair, stack);
         }
     }
     false

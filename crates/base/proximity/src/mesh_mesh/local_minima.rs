@@ -7,7 +7,8 @@ use super::facing_kernel::facing_pairs;
 use super::leaf_kernel::LeafPair;
 use super::leaf_pairs::visit_leaf_pairs;
 use super::mesh_pair::MeshPair;
-use super::node_pair::NodePair;
+use super::node_kernel::{INTERSECTION, expand};
+use super::node_pair::{NodePair, NodePairStack};
 use super::normal_cones::NormalConeHierarchy;
 use super::relative_placement::{RelativePlacement, spheres_farther_than};
 use super::surface_patch::FacingTest;
@@ -126,7 +127,8 @@ impl LocalMinimumSearch<'_> {
             let patch = self.a.of_node(pair.height_a, pair.a);
             patch.may_face(self.b.of_node(pair.height_b, pair.b), &test)
         };
-        visit_leaf_pairs(meshes, &cutoff, stack, stats, may_face, |pair, stats| {
+        let expand = |pair: &NodePair, stack: &mut NodePairStack| expand::<INTERSECTION>(meshes, pair, &cutoff, stack);
+        visit_leaf_pairs(meshes, expand, stack, stats, may_face, |pair, stats| {
             let leaves = LeafPair { a: pair.a as usize, b: pair.b as usize };
             let patches = (self.a.of_leaf(leaves.a), self.b.of_leaf(leaves.b));
             let facing = facing_pairs(meshes, leaves, patches, self.b.of_node(0, pair.b), &test);

@@ -33,20 +33,31 @@ pub(super) fn expand_sides<const MODE: u8>(
     cutoff: &Cutoff,
     stack: &mut NodePairStack,
 ) -> u32 {
-    dispatch!(meshes.simd_level, simd => {
-        let first = stack.len();
-        let side_a = side(&meshes.a.bvh, pair.a, pair.height_a, expanded.a);
-        let side_b = side(&meshes.b.bvh, pair.b, pair.height_b, expanded.b);
-        let mut best = (f32::INFINITY, first);
-        let tests = test_children::<_, MODE>(simd, side_a, side_b, meshes.placement, cutoff, |i, j, key| {
-            if key < best.0 {
-                best = (key, stack.len());
-            }
-            stack.push(pair.child_of(expanded, i, j, key));
-        });
-        stack.bring_to_top(best.1);
-        tests
-    })
+    dispatch!(meshes.simd_level, simd => expand_in::<_, MODE>(simd, meshes, pair, expanded, cutoff, stack))
+}
+
+/// [`expand_sides`] for an instruction set that was selected before.
+#[inline(always)]
+pub(super) fn expand_in<S: Simd, const MODE: u8>(
+    simd: S,
+    meshes: &MeshPair,
+    pair: &NodePair,
+    expanded: Sides,
+    cutoff: &Cutoff,
+    stack: &mut NodePairStack,
+) -> u32 {
+    let first = stack.len();
+    let side_a = side(&meshes.a.bvh, pair.a, pair.height_a, expanded.a);
+    let side_b = side(&meshes.b.bvh, pair.b, pair.height_b, expanded.b);
+    let mut best = (f32::INFINITY, first);
+    let tests = test_children::<_, MODE>(simd, side_a, side_b, meshes.placement, cutoff, |i, j, key| {
+        if key < best.0 {
+            best = (key, stack.len());
+        }
+        stack.push(pair.child_of(expanded, i, j, key));
+    });
+    stack.bring_to_top(best.1);
+    tests
 }
 
 /// The box of a node in the frame and units of its own tree.
