@@ -221,7 +221,7 @@ pub fn devtools(root: &Path, words: &[&str]) -> Result<(), String> {
     shell::run(root, &program.to_string_lossy(), words, covers_of(words, &covers).as_slice())
 }
 
-/// A folder of covers of robots that only tests have: they must not fill the cache of the user.
+/// A folder for covers of random robots: they must not fill the cache of the user.
 pub fn own_covers(root: &Path) -> String {
     shell::target_folder(root).join("fuzz-covers").display().to_string()
 }

@@ -269,9 +269,8 @@ fn report(
     };
     let head = format!("# {words}\n# Found by: {found_by}\n# Again: {again}\n");
     let written = std::fs::write(&file, head + &text).and_then(|()| small.write_files(places.cells));
-    if written.is_ok() && pictures.is_ok() {
-        summary.files.push((file, words));
-    }
+    let problem = written.map_err(|e| e.to_string()).and(pictures).err();
+    summary.files.push((file, words + &problem.map(|why| format!(" (not written: {why})")).unwrap_or_default()));
 }
 
 #[cfg(test)]

@@ -239,6 +239,7 @@ pub fn json(seed: u64, summaries: &[Summary], keys: Option<(&Coverage, &Path)>) 
             "unforeseen_entries": s.unforeseen,
             "judged_boxes": s.judged.boxes,
             "judged_stale_ticks": s.judged.stale_ticks,
+            "judged_holds": s.judged.holds,
             "failed": s.failed(),
             "simulated_s": s.simulated_s,
             "took_s": s.took.as_secs_f64(),

@@ -255,6 +255,22 @@ fn no_collision_of_random_robots_lies_in_a_free_cell() {
     assert!(touched * 3 >= rounds, "{touched} of {rounds}");
 }
 
+/// Maps in strips of eight values, the last of which is not full.
+#[test]
+fn a_fine_map_is_the_same_on_any_number_of_cores() {
+    let mut case = Case::new(vec![cuboid([0.5, 0.2, 0.4], [0.3, 0.2, 0.8], [0.3, 0.2, 0.4])]);
+    case.step = 1.03;
+    let grid = grid(&case);
+    assert!(grid.shape()[1] > 16 && !grid.shape()[1].is_multiple_of(8), "{:?}", grid.shape());
+    let found = map(&case, CoverMapSettings::default());
+    assert!(compare(&case, &grid, &found, 20_000) > 0);
+    for cores in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(cores).build().unwrap();
+        let other = pool.install(|| map(&case, CoverMapSettings::default()));
+        assert!(other.iter().eq(found.iter()), "another map on {cores} cores");
+    }
+}
+
 #[test]
 fn joints_that_follow_others_move_with_them() {
     let mut random = Random(23);

@@ -241,11 +241,14 @@ fn needed(boxes: &[SeenBox], (eye, height): (Eye, f64), random: &mut Random) -> 
         // A pixel or two.
         Eye::Camera => return vec![format!("uncertainty = {}", random.between(0.1, 0.2))],
         Eye::Points => (voxel(boxes), random.whole(1, 2)),
-        Eye::Depths => (0.3, 1),
+        Eye::Depths => (0.2, 1),
     };
+    // A small box may be in a single cube.
+    let is_wide = boxes.iter().all(|one| one.size.into_iter().fold(0.0, f64::max) > 3.0 * voxel);
+    let min_voxels = if is_wide { random.whole(1, 2) } else { 1 };
     let ceiling = rounded(height + random.between(0.2, 2.0));
     vec![
-        format!("voxel = {voxel}\nmin_points = {min_points}\nmin_voxels = {}", random.whole(1, 2)),
+        format!("voxel = {voxel}\nmin_points = {min_points}\nmin_voxels = {min_voxels}"),
         format!("ceiling = {ceiling}"),
     ]
 }

@@ -77,8 +77,10 @@ pub struct Judged {
     pub watched: usize,
     /// Number of pairs of robot and box that a sensor sees, for clouds of points, pictures of depths and cameras.
     pub boxes: [usize; 3],
-    /// Number of ticks of robots at which the last picture was too old.
+    /// Number of ticks of robots at which they had to rest because the last picture was too old.
     pub stale_ticks: usize,
+    /// Number of times for which robots were held.
+    pub holds: usize,
 }
 
 impl Judged {
@@ -86,10 +88,11 @@ impl Judged {
         self.watched += other.watched;
         self.boxes.iter_mut().zip(other.boxes).for_each(|(all, more)| *all += more);
         self.stale_ticks += other.stale_ticks;
+        self.holds += other.holds;
     }
 
     /// Whether every kind of sensor was judged.
     pub fn has_all(&self) -> bool {
-        self.boxes.iter().all(|boxes| *boxes > 0) && self.stale_ticks > 0
+        self.boxes.iter().all(|boxes| *boxes > 0) && self.stale_ticks > 0 && self.holds > 0
     }
 }

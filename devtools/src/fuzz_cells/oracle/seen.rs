@@ -40,6 +40,7 @@ pub fn check(spec: &CellSpec, cell: &Cell, recording: &Recording, findings: &mut
             let touched = (!boxes.is_empty()).then(|| first_touch(cell, recording, (robot, &arms[robot]), &boxes));
             findings.list.extend(touched.flatten().map(|t_s| Finding::TouchedSeen { robot, t_s }));
             moved_unseen(sensor, cell, recording, robot, findings);
+            findings.judged.holds += recording.robots[robot].perception.as_ref().map_or(0, |track| track.holds.len());
             findings.list.extend(held_for_nothing(sensor, recording, robot));
         }
     }
@@ -51,11 +52,15 @@ fn seen_boxes(sensor: &SensorSpec, read: &CellSensor, cell: &Cell) -> Vec<(Oracl
     let fixed = cell.objects.iter().enumerate().filter(|(index, _)| !moves(*index)).map(|(_, object)| object);
     let known: Vec<(OracleSolid, Frame)> =
         fixed.map(|object| (OracleSolid::eroded(&object.shape, 0.0), Frame::of(&object.in_world))).collect();
+    // Only points are compared with known objects.
+    let is_known = |one: &SeenBox| {
+        let is_camera = matches!(sensor.view, SensorView::Camera { .. });
+        !is_camera && known.iter().any(|object| apart_m(&solid(one), object) <= ALONE_M)
+    };
     let stands = |one: &&SeenBox| one.stands() && !one.is_learnt && is_clear_of_box(cell, one, CLEAR_M);
     let is_alone = |one: &&SeenBox| {
         let mut learnt = sensor.boxes.iter().filter(|other| other.is_learnt);
-        learnt.all(|other| apart_m(&solid(one), &solid(other)) > ALONE_M)
-            && known.iter().all(|object| apart_m(&solid(one), object) > ALONE_M)
+        learnt.all(|other| apart_m(&solid(one), &solid(other)) > ALONE_M) && !is_known(one)
     };
     let seen = sensor.boxes.iter().filter(stands).filter(is_alone);
     seen.filter_map(|one| seen_part(sensor, read, cell, one)).map(|part| solid(&part)).collect()
@@ -74,7 +79,7 @@ fn is_stale(sensor: &SensorSpec, t_s: f64, by_s: f64) -> bool {
 }
 
 /// Finds a motion at a time at which the last picture has been too old for longer than a stop takes; a robot that rests does not
-/// begin to move once what it was told before has taken effect.
+/// begin to move once what it was told before has taken effect (before that, a test of the simulation looks).
 fn moved_unseen(sensor: &SensorSpec, cell: &Cell, recording: &Recording, robot: usize, findings: &mut Findings) {
     let stop_s = cell.robots[robot].limits.iter().map(|l| l.velocity / l.stop).fold(0.0, f64::max);
     let told_s = cell.monitoring.reaction_delay_s + 3.0 * recording.tick_s;
@@ -87,9 +92,10 @@ fn moved_unseen(sensor: &SensorSpec, cell: &Cell, recording: &Recording, robot: 
             (fresh_s, rests) = (t_s, false);
             continue;
         }
-        findings.judged.stale_ticks += 1;
         let moves = moves(w);
-        if moves && (rests || t_s - fresh_s > longest_s) {
+        let must_rest = rests || t_s - fresh_s > longest_s;
+        findings.judged.stale_ticks += usize::from(must_rest);
+        if moves && must_rest {
             findings.list.push(Finding::MovedUnseen { robot, t_s });
             return;
         }

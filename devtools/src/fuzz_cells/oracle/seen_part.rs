@@ -14,7 +14,7 @@ use crate::fuzz_cells::spec::{LensSpec, SeenBox, SensorSpec, SensorView};
 const PIXELS: f64 = 1.5;
 /// Rounding of the numbers of a file of points, and of heights in whole steps of depth, m.
 const ROUNDING_M: f64 = 0.003;
-/// Where a robot is nearer to the line of sight of a camera than this, m, what is behind it may not have been seen.
+/// Where something is nearer to a line of sight than this, m, what is behind it may not have been seen.
 const HIDES_M: f64 = 0.2;
 
 /// A box without the borders that the sensor may not see, if it sees the box at all.
@@ -30,7 +30,7 @@ pub fn seen_part(sensor: &SensorSpec, read: &CellSensor, cell: &Cell, one: &Seen
                 // A lower side is not measured, and what is behind another box is hidden.
                 SensorView::Depths { lens, .. } => {
                     let is_whole = settings.extend_to_floor && is_in_view(sensor, lens, one);
-                    if !is_whole || is_behind_another(sensor, one) {
+                    if !is_whole || sensor.boxes.iter().any(|other| may_hide(sensor, other, one)) {
                         return None;
                     }
                     PIXELS * (sensor.at[2] - top) / lens.focal
@@ -42,7 +42,10 @@ pub fn seen_part(sensor: &SensorSpec, read: &CellSensor, cell: &Cell, one: &Seen
             (&settings.track, border)
         }
         (SensorKind::Camera { settings, .. }, SensorView::Camera { lens }) => {
-            if !is_in_view(sensor, lens, one) || is_hidden(sensor, cell, one) {
+            // Other boxes that hide a part are one obstacle with it, but for those that were learnt.
+            let mut learnt = sensor.boxes.iter().filter(|other| other.is_learnt);
+            let is_hidden = is_hidden(sensor, cell, one) || learnt.any(|other| may_hide(sensor, other, one));
+            if !is_in_view(sensor, lens, one) || is_hidden {
                 return None;
             }
             top = top.min(sensor.floor + least_height_m(settings));
@@ -81,13 +84,11 @@ fn is_in_view(sensor: &SensorSpec, lens: &LensSpec, one: &SeenBox) -> bool {
 }
 
 /// Whether another box may hide a part of a box at some time.
-fn is_behind_another(sensor: &SensorSpec, one: &SeenBox) -> bool {
+fn may_hide(sensor: &SensorSpec, other: &SeenBox, one: &SeenBox) -> bool {
     let [x, y, z] = sensor.at;
-    sensor.boxes.iter().filter(|other| other.at != one.at).any(|other| {
-        let (solid, at) = solid(other);
-        let crosses = |to: Vec3| solid.is_crossed(&at, [Vec3::new(x, y, z), to], HIDES_M);
-        other.velocity != [0.0; 2] || corners(one).any(crosses)
-    })
+    let (solid, at) = solid(other);
+    let crosses = |to: Vec3| solid.is_crossed(&at, [Vec3::new(x, y, z), to], HIDES_M);
+    other.at != one.at && (other.velocity != [0.0; 2] || corners(one).any(crosses))
 }
 
 /// Whether a robot may hide a part of a box from a camera at the start.

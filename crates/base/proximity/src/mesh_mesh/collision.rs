@@ -10,7 +10,7 @@ use super::leaf_pairs::visit_leaf_pairs;
 use super::mesh_features::MeshFeatures;
 use super::mesh_pair::MeshPair;
 use super::node_kernel::{INTERSECTION, expand_in};
-use super::node_pair::{NodePair, NodePairStack};
+use super::node_pair::NodePair;
 use super::relative_placement::{RelativePlacement, spheres_farther_than};
 use super::triangle_batch::{TriangleBatch, corners_in_a, robust_closest_points};
 use super::workspace::{QueryStats, Workspace};
@@ -126,17 +126,21 @@ impl CollisionTraversal<'_> {
         let cutoff = Cutoff::new(meshes.placement.f64_error, meshes.placement);
         let Workspace { stack, batch, stats, .. } = workspace;
         batch.clear();
-        // Selected once for the whole traversal: a call per pair of nodes would cost an eighth of it.
-        let has_ended = dispatch!(meshes.simd_level, simd => {
-            let expand = |pair: &NodePair, stack: &mut NodePairStack| {
-                expand_in::<_, INTERSECTION>(simd, meshes, pair, pair.expanded_sides(), &cutoff, stack)
-            };
-            visit_leaf_pairs(meshes, expand, stack, stats, |_| true, |pair, stats| {
+        // Selected once for the whole traversal, so that the kernels are inlined into it.
+        let has_ended = dispatch!(meshes.simd_level, simd => visit_leaf_pairs(
+            meshes,
+            #[inline(always)]
+            |pair, stack| expand_in::<_, INTERSECTION>(simd, meshes, pair, pair.expanded_sides(), &cutoff, stack),
+            stack,
+            stats,
+            |_| true,
+            #[inline(always)]
+            |pair, stats| {
                 let leaves = LeafPair { a: pair.a as usize, b: pair.b as usize };
                 let left = touching_pairs(simd, meshes, leaves, &cutoff);
                 !left.is_empty() && self.visit_triangles(pair, left, batch, stats)
-            })
-        });
+            },
+        ));
         if has_ended {
             return true;
         }

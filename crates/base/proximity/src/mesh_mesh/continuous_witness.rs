@@ -2,6 +2,7 @@
 //! nearest pair.
 
 use elbowroom_spatial::Vec3;
+use fearless_simd::dispatch;
 
 use super::cutoff::Cutoff;
 use super::leaf_kernel::{LeafIntervals, LeafPair, pairs_within};
@@ -112,7 +113,8 @@ impl TiedPairs<'_> {
             stats.leaves += 1;
             let leaves = LeafPair { a: pair.a as usize, b: pair.b as usize };
             let mut intervals = LeafIntervals::UNKNOWN;
-            let left = pairs_within(meshes, leaves, &cutoff, &mut intervals);
+            let left =
+                dispatch!(meshes.simd_level, simd => pairs_within(simd, meshes, leaves, &cutoff, &mut intervals));
             for (i, j) in left.lanes() {
                 stats.triangles += 1;
                 self.visit(pair.a * LEAF_SIZE as u32 + i, pair.b * LEAF_SIZE as u32 + j);

@@ -208,7 +208,8 @@ fn check_leaves(meshes: &MeshPair, pair: &NodePair, cutoff: &Cutoff, radius: f64
     let leaves = LeafPair { a: pair.a as usize, b: pair.b as usize };
     let mut intervals = LeafIntervals::UNKNOWN;
     let touching = dispatch!(meshes.simd_level, simd => touching_pairs(simd, meshes, leaves, cutoff));
-    let left = pairs_within(meshes, leaves, cutoff, &mut intervals).0 & touching.0;
+    let within = dispatch!(meshes.simd_level, simd => pairs_within(simd, meshes, leaves, cutoff, &mut intervals));
+    let left = within.0 & touching.0;
     let mut decided = 0;
     for (i, j) in PairMask(leaves.all(meshes).0 & !left).lanes() {
         let slot = |leaf: u32, lane: u32| leaf * LEAF_SIZE as u32 + lane;

@@ -31,7 +31,9 @@ impl LeafPair {
 
 /// The pairs of triangles that may be within the cutoff, for a distance or tolerance query. `intervals` belong to the leaf
 /// of B and are reused for the next leaf of A.
-pub(super) fn pairs_within(
+#[inline(always)]
+pub(super) fn pairs_within<S: Simd>(
+    simd: S,
     meshes: &MeshPair,
     leaves: LeafPair,
     cutoff: &Cutoff,
@@ -39,24 +41,22 @@ pub(super) fn pairs_within(
 ) -> PairMask {
     let (a, b) = leaves.leaves(meshes);
     let all = leaves.all(meshes);
-    dispatch!(meshes.simd_level, simd => {
-        let left = match &cutoff.witness_frame {
-            Some(frame) => {
-                intervals.compute(simd, b, frame);
-                intervals.pairs_within(simd, &Intervals::of_a(simd, a, frame), cutoff, all)
-            }
-            None => all,
-        };
-        if left.is_empty() {
-            return left;
+    let left = match &cutoff.witness_frame {
+        Some(frame) => {
+            intervals.compute(simd, b, frame);
+            intervals.pairs_within(simd, &Intervals::of_a(simd, a, frame), cutoff, all)
         }
-        let of_b = triangles_in_a(simd, b, meshes.placement);
-        let left = by_normals(simd, &load_corners(simd, &a.corner), &of_b, a, cutoff, left);
-        match &cutoff.witness_frame {
-            Some(frame) => by_descent(simd, a, &of_b, frame, cutoff, left),
-            None => left,
-        }
-    })
+        None => all,
+    };
+    if left.is_empty() {
+        return left;
+    }
+    let of_b = triangles_in_a(simd, b, meshes.placement);
+    let left = by_normals(simd, &load_corners(simd, &a.corner), &of_b, a, cutoff, left);
+    match &cutoff.witness_frame {
+        Some(frame) => by_descent(simd, a, &of_b, frame, cutoff, left),
+        None => left,
+    }
 }
 
 /// Excludes pairs that Gilbert's descent proves to be farther apart than the cutoff.

@@ -4,9 +4,10 @@ use super::mesh_pair::MeshPair;
 use super::node_pair::{NodePair, NodePairStack};
 use super::workspace::QueryStats;
 
-/// Calls `visit` with each pair of leaves that may be within the cutoff until it returns true, and returns whether it did.
+/// Calls `visit` with each pair of leaves that may be near until it returns true, and returns whether it did.
 ///
-/// `expand` pushes the pairs of children that may be within it, and returns the number of its tests. `keep` returns false for pairs of nodes and leaves that need no visit.
+/// `expand` pushes the pairs of children that may be near and returns the number of box tests; `keep` returns false for pairs
+/// of nodes and leaves that need no visit.
 #[inline(always)]
 pub(super) fn visit_leaf_pairs(
     meshes: &MeshPair,

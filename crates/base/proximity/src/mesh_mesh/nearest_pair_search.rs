@@ -2,13 +2,14 @@
 //! are farther.
 
 use elbowroom_spatial::Vec3;
+use fearless_simd::{Simd, dispatch};
 
 use super::cutoff::Cutoff;
 use super::landmark_descent::nearest_landmark_pairs;
 use super::leaf_kernel::{LeafIntervals, LeafPair, PairMask, best_partners, pairs_within};
 use super::mesh_pair::MeshPair;
 use super::nearest_pair::NearestPair;
-use super::node_kernel::{DISTANCE, expand};
+use super::node_kernel::{DISTANCE, expand, expand_in};
 use super::node_pair::{NodePair, NodePairStack};
 use super::triangle_batch::{TriangleBatch, robust_closest_points};
 use super::triangle_kernel::{BATCH, Distances};
@@ -71,7 +72,8 @@ pub(super) fn nearest_pair(
     let (mut search, stack) = NearestPairSearch::new(meshes, settings, workspace);
     stack.push(NodePair::root(&meshes.a.bvh, &meshes.b.bvh));
     search.find_first_bound(stack);
-    search.branch_and_bound(stack);
+    // Selected once for the whole branch and bound, so that the kernels are inlined into it.
+    dispatch!(meshes.simd_level, simd => search.branch_and_bound(simd, stack));
     search.best
 }
 
@@ -231,13 +233,14 @@ impl<'a> NearestPairSearch<'a> {
         }
     }
 
-    fn visit_leaves(&mut self, leaves: LeafPair) {
+    #[inline(always)]
+    fn visit_leaves<S: Simd>(&mut self, simd: S, leaves: LeafPair) {
         self.stats.leaves += 1;
         if self.intervals_of != Some(leaves.b) {
             self.intervals.invalidate();
             self.intervals_of = Some(leaves.b);
         }
-        let left = pairs_within(self.meshes, leaves, &self.cutoff, &mut self.intervals);
+        let left = pairs_within(simd, self.meshes, leaves, &self.cutoff, &mut self.intervals);
         self.queue_pairs(leaves, left);
     }
 
@@ -261,7 +264,8 @@ impl<'a> NearestPairSearch<'a> {
     }
 
     /// Expands every pair of nodes that may be nearer than the best pair.
-    fn branch_and_bound(&mut self, stack: &mut NodePairStack) {
+    #[inline(always)]
+    fn branch_and_bound<S: Simd>(&mut self, simd: S, stack: &mut NodePairStack) {
         while let Some(pair) = stack.pop() {
             if self.is_done() {
                 return;
@@ -270,9 +274,11 @@ impl<'a> NearestPairSearch<'a> {
                 continue;
             }
             if pair.is_leaves() {
-                self.visit_leaves(LeafPair { a: pair.a as usize, b: pair.b as usize });
+                self.visit_leaves(simd, LeafPair { a: pair.a as usize, b: pair.b as usize });
             } else {
-                self.expand(&pair, stack);
+                self.stats.nodes += 1;
+                let expanded = pair.expanded_sides();
+                self.stats.boxes += expand_in::<_, DISTANCE>(simd, self.meshes, &pair, expanded, &self.cutoff, stack);
             }
         }
         self.flush();

@@ -36,7 +36,7 @@ pub(super) fn expand_sides<const MODE: u8>(
     dispatch!(meshes.simd_level, simd => expand_in::<_, MODE>(simd, meshes, pair, expanded, cutoff, stack))
 }
 
-/// [`expand_sides`] for an instruction set that was selected before.
+/// [`expand_sides`] for an instruction set that the caller has selected.
 #[inline(always)]
 pub(super) fn expand_in<S: Simd, const MODE: u8>(
     simd: S,

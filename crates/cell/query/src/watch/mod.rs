@@ -279,7 +279,7 @@ fn select_sensor<'c>(cell: &'c Cell, request: &WatchRequest) -> Result<&'c CellS
     }
 }
 
-/// The objects that no drive moves, as solids in the world. Where a part is before it is gripped, it stays known.
+/// The objects that no drive moves, as solids in the world. The first place of a gripped part stays in the list.
 fn fixed_objects(cell: &Cell) -> Vec<ArmPart> {
     let moves = |o: ObjectId| cell.moving_objects.iter().any(|m| m.object == o);
     let fixed = cell.objects.iter().enumerate().filter(|(i, _)| !moves(ObjectId(*i)));

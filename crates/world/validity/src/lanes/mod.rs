@@ -14,7 +14,7 @@ mod sin_cos;
 #[cfg(test)]
 mod sin_cos_tests;
 
-/// The library of vectors, for crates with kernels of their own.
+/// The types of vectors, for crates with kernels of their own.
 pub use fearless_simd as simd;
 pub use row::{Fused, LANES, PointRow, Row, V3, detected_simd_level, splat};
 pub(crate) use sin_cos::sin_cos;

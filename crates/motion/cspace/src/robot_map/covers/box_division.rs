@@ -28,7 +28,7 @@ struct Boxes {
     probes: u32,
 }
 
-/// Size of the parts that cores work on: the least level of boxes that a strip is divided from.
+/// Largest level of the boxes that a strip begins with: a strip, which one core works on, has at most 2³ values of an axis.
 const STRIP_LEVEL: usize = 3;
 
 /// Fills the map of one obstacle, on all cores.
@@ -36,15 +36,20 @@ pub(super) fn fill(obstacle: &ObstacleLanes<'_>, classes: &[CoverClass], roles: 
     let mut bits = CellBits::new(roles);
     for (number, class) in classes.iter().enumerate() {
         let top = class.levels.len() - 1;
-        let divide = |rows: CellRows<'_>, level: usize, blocks: Range<usize>| {
-            BoxDivision::new(obstacle, classes, roles, first, rows).run(number, level, blocks);
+        let divide = |places: &mut PlaceMemo, rows: CellRows<'_>, level: usize, blocks: Range<usize>| {
+            let mut division = BoxDivision::new(obstacle, classes, roles, first, rows);
+            std::mem::swap(&mut division.places, places);
+            division.run(number, level, blocks);
+            std::mem::swap(&mut division.places, places);
         };
         if class.uses[0] {
             let level = top.min(STRIP_LEVEL);
             let strips = bits.strips(1 << level).enumerate();
-            strips.for_each(|(strip, rows)| divide(rows, level, strip..strip + 1));
+            strips.for_each_init(PlaceMemo::default, |places, (strip, rows)| {
+                divide(places, rows, level, strip..strip + 1);
+            });
         } else {
-            divide(bits.all(), top, 0..1);
+            divide(&mut PlaceMemo::default(), bits.all(), top, 0..1);
         }
     }
     bits

@@ -174,7 +174,7 @@ impl CoverMapBuilder {
         CoverObstacle::new(shape, self.slack_m)
     }
 
-    /// Computes the cells that an obstacle blocks, placed in the world.
+    /// Computes the cells that an obstacle blocks, placed in the world, on all cores (of the pool of rayon).
     ///
     /// # Errors
     /// The pose is not finite or too far away.
