@@ -219,7 +219,7 @@ fn seen_box(
     None
 }
 
-/// Makes the times of the pictures: those of the empty cell before the start, and most of the others until the end.
+/// Makes the times of the pictures: first of the empty cell, before the start, then mostly until the end.
 fn times(spec: &CellSpec, learning: usize, latency_s: f64, random: &mut Random) -> Vec<f64> {
     let period_s = random.between(0.1, 0.4);
     let late_s = if random.percent(20) { random.between(0.0, 1.5) } else { -(1.0 + random.unit()) * period_s };

@@ -165,7 +165,7 @@ pub enum StepSpec {
 }
 
 impl RobotSpec {
-    /// Names of the joints of a robot that is written in rows; those of other models are in their files.
+    /// Names of the joints of a robot that is written in rows; other models have them in their files.
     pub fn joint_names(&self) -> Vec<String> {
         let Model::Dh { rows, has_names, .. } = &self.model else { return Vec::new() };
         let name = |j: usize| if *has_names { format!("axis {j}") } else { format!("joint_{}", j + 1) };
