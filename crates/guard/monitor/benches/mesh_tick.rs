@@ -16,18 +16,30 @@ use common::{RandomGeometry, XorshiftStar, parts};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Monitor, Part, Presence, Region, Snapshot, SourceId, SourceState, Volume,
+    Configuration, ConfigurationParts, Monitor, OverrideReason, Part, Presence, Region, Snapshot, SourceId, SourceState, Volume,
 };
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;
 use elbowroom_spatial::{FrameMotion, Pose, Rotation, Vec3};
 
 const TICKS: u32 = 20_000;
+/// Half of the time over which velocities are derived.
+const STEP_S: f64 = 1e-6;
 
 /// Joint values of both arms: slow sines within limits, a phase apart.
 fn joints(t: f64, phase: f64) -> [f64; 6] {
     let wave = |speed: f64, reach: f64| reach * (speed * t + phase).sin();
     [wave(0.5, 1.2), 0.3 + wave(0.7, 0.6), 0.8 + wave(0.6, 0.8), wave(0.9, 2.0), wave(0.8, 1.5), wave(1.0, 3.0)]
+}
+
+/// The motion of a frame between two poses, [`STEP_S`] before and after now.
+fn motion(before: &Pose, after: &Pose) -> FrameMotion {
+    let per_second = 1.0 / (2.0 * STEP_S);
+    FrameMotion {
+        velocity: (after.translation - before.translation) * per_second,
+        angular_velocity: (after.rotation * before.rotation.inverse()).to_rotation_vector() * per_second,
+        ..FrameMotion::default()
+    }
 }
 
 /// Every mesh of the arm as a volume, including the stationary base.
@@ -92,19 +104,22 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (mut times, mut near, mut slowed) = (Vec::new(), 0u64, [0u32; 2]);
         for i in 0..TICKS {
             let t = 0.002 * f64::from(i);
-            neighbour.q.copy_from_slice(&joints(t, 1.0));
-            robot.chain.forward(&mut neighbour);
-            let at = |v: &Volume| SourceState {
-                pose: base * neighbour.link_in_root(v.link) * v.in_link,
-                motion: FrameMotion::default(),
-                stamp_s: t,
+            let mut poses = |t: f64| -> Vec<Pose> {
+                neighbour.q.copy_from_slice(&joints(t, 1.0));
+                robot.chain.forward(&mut neighbour);
+                own.iter().map(|v| base * neighbour.link_in_root(v.link) * v.in_link).collect()
             };
-            let sources: Vec<SourceState> = own.iter().map(at).collect();
+            let (before, now, after) = (poses(t - STEP_S), poses(t), poses(t + STEP_S));
+            let moving = |i: usize| SourceState { pose: now[i], motion: motion(&before[i], &after[i]), stamp_s: t };
+            let sources: Vec<SourceState> = (0..own.len()).map(moving).collect();
             let q = joints(t, 0.0);
-            let snapshot = Snapshot { sources: &sources, ..Snapshot::stationary(t, &q) };
+            let (before, after) = (joints(t - STEP_S, 0.0), joints(t + STEP_S, 0.0));
+            let qd: [f64; 6] = std::array::from_fn(|i| (after[i] - before[i]) / (2.0 * STEP_S));
+            let snapshot = Snapshot { qd: &qd, sources: &sources, ..Snapshot::stationary(t, &q) };
             let start = Instant::now();
             let report = monitor.tick(&snapshot);
             times.push(start.elapsed().as_nanos() as f64 / 1e3);
+            assert!(!matches!(report.reason, OverrideReason::Fault(_)), "{}", report.reason);
             slowed[0] += u32::from(report.speed_override < 1.0);
             slowed[1] += u32::from(report.speed_override <= 0.0);
             near += u64::from(report.measured_pairs);

@@ -12,11 +12,12 @@ use std::time::Instant;
 
 use common::{RandomGeometry, XorshiftStar, arm, arm_volumes, configuration, parts};
 use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Laws, Monitor, Region, RegionId, Snapshot, StoppingSettings,
+    Configuration, ConfigurationParts, Laws, Monitor, OverrideReason, Region, RegionId, Snapshot, StoppingSettings,
 };
 use elbowroom_spatial::{Rotation, Vec3};
 
 const TICKS: u32 = 50_000;
+const TICK_S: f64 = 0.002;
 
 /// The motion of the arm.
 fn joints(t: f64) -> [f64; 6] {
@@ -61,25 +62,29 @@ fn regions(count: usize, nearest: f64, farthest: f64) -> Vec<Region> {
     (0..count).map(one).collect()
 }
 
-/// Prints one row if its name contains the command's argument.
-fn measure(name: &str, regions: Vec<Region>, laws: Laws) {
+/// Prints one row if its name contains the command's argument. The arm moves by `step_s` of its motion in each tick.
+fn measure(name: &str, regions: Vec<Region>, laws: Laws, step_s: f64) {
     if elbowroom_testkit::bench::arguments().next().is_some_and(|part| !name.contains(&part)) {
         return;
     }
+    let stops = laws.stopping_distance.is_some();
     let parts = ConfigurationParts { laws, ..parts(arm(), arm_volumes(), regions) };
     let mut m = Monitor::new(Configuration::new(parts).expect("valid"), None).expect("a valid configuration");
     let (mut times, mut pairs) = (Vec::with_capacity(TICKS as usize), 0_u64);
     let mut t = 0.0;
     for i in 0..TICKS {
         let (q, intent) = (joints(t), velocities(t));
-        let now_s = 0.002 * f64::from(i);
-        // The slow motion is the same for all laws and versions, whatever override is requested.
-        let s = Snapshot { qd: &[0.0; 6], intent: Some(&intent), ..Snapshot::stationary(now_s, &q) };
+        let now_s = TICK_S * f64::from(i);
+        // The motion is the same for all laws and versions, whatever override is requested.
+        // The stopping-distance law would report that the robot does not brake.
+        let qd = intent.map(|v| if stops { 0.0 } else { v * step_s / TICK_S });
+        let s = Snapshot { qd: &qd, intent: Some(&intent), ..Snapshot::stationary(now_s, &q) };
         let begin = Instant::now();
         let report = std::hint::black_box(m.tick(std::hint::black_box(&s)));
         times.push(begin.elapsed().as_nanos());
+        assert!(!matches!(report.reason, OverrideReason::Fault(_)), "{}", report.reason);
         pairs += u64::from(report.measured_pairs);
-        t += 4e-4;
+        t += step_s;
     }
     times.sort_unstable();
     let at = |fraction: f64| times[((times.len() - 1) as f64 * fraction) as usize] as f64 / 1000.0;
@@ -97,12 +102,17 @@ fn main() {
         joint_acceleration: vec![2.0; 6],
     };
     let all = Laws { direction_aware: true, stopping_distance: Some(stopping), ..Laws::default() };
-    measure("none", vec![], Laws::default());
+    // A fifth of the speed of the motion, and all of it.
+    let (slow, fast) = (0.2 * TICK_S, TICK_S);
+    measure("none", vec![], Laws::default(), slow);
     let free = untouched(regions(4000, 0.3, 1.8), 1000);
-    measure("100 around the arm, never touched", free[..100].to_vec(), Laws::default());
-    measure("1,000 around the arm, never touched", free.clone(), Laws::default());
-    measure("1,000 around the arm, never touched, all laws", free, all.clone());
-    measure("1,000 around the arm, often touched", regions(1000, 0.3, 1.6), Laws::default());
-    measure("1,000 around the arm, often touched, all laws", regions(1000, 0.3, 1.6), all);
-    measure("10,000 far (3 to 30 m)", regions(10_000, 3.0, 30.0), Laws::default());
+    measure("100 around the arm, never touched", free[..100].to_vec(), Laws::default(), slow);
+    measure("1,000 around the arm, never touched", free.clone(), Laws::default(), slow);
+    measure("1,000 around the arm, never touched, all laws", free, all.clone(), slow);
+    let touched = regions(1000, 0.3, 1.6);
+    measure("1,000 around the arm, often touched", touched.clone(), Laws::default(), slow);
+    measure("1,000 around the arm, often touched, all laws", touched.clone(), all.clone(), slow);
+    measure("1,000 often touched, fast", touched.clone(), Laws::default(), fast);
+    measure("1,000 often touched, fast, direction-aware", touched, Laws { stopping_distance: None, ..all }, fast);
+    measure("10,000 far (3 to 30 m)", regions(10_000, 3.0, 30.0), Laws::default(), slow);
 }

@@ -1,6 +1,7 @@
 //! The speed override that the regions request, and the region that governs it.
 
-use crate::region_clearance::{RegionClearance, RegionClearances};
+use crate::region_clearance::RegionClearance;
+use crate::region_clearances::RegionClearances;
 use crate::region_states::RegionStates;
 use crate::zone_client::ZoneClient;
 use crate::{Configuration, OverrideReason, RegionId, RegionKind, Snapshot};

@@ -46,6 +46,13 @@
 //! **Invariant.** Under any input, a tick never allocates, locks or panics. If the input is stale, out of order, not
 //! finite or implausible, the override is always 0, with an [`OverrideReason`].
 
+// Unit tests share the robots of the integration tests.
+#[cfg(test)]
+#[path = "../tests/common/mod.rs"]
+mod common;
+#[cfg(test)]
+extern crate self as elbowroom_monitor;
+
 mod attached_volumes;
 mod braking_check;
 mod broad_phase;
@@ -71,8 +78,11 @@ mod recovery;
 mod region;
 mod region_approach;
 mod region_clearance;
+mod region_clearances;
 mod region_distance_query;
 mod region_groups;
+mod region_neighbours;
+mod region_state;
 mod region_states;
 mod region_sweep;
 mod report;
@@ -88,6 +98,7 @@ mod tick_context;
 mod unchanged_reading;
 mod volume;
 mod volume_region_pair;
+mod volume_travel;
 mod warm_start_cache;
 mod watchdog;
 mod zone_client;

@@ -7,14 +7,14 @@ use crate::decision::Decision;
 use crate::event::EventLog;
 use crate::laws::rate_limited;
 use crate::override_history::OverrideRange;
-use crate::override_law::{OverrideLaw, OverrideLawSettings, max_region_travel_m};
+use crate::override_law::OverrideLaw;
 use crate::placement::{DynamicRegion, Placement};
-use crate::region_clearance::RegionClearances;
+use crate::region_clearances::RegionClearances;
 use crate::region_states::RegionStates;
 use crate::region_sweep::RegionSweep;
 use crate::source_check::{SourceCheck, SourceStatus};
 use crate::stopping::{StoppingInput, StoppingLaw};
-use crate::tick_context::{DirectionSettings, TickContext};
+use crate::tick_context::{LOOKAHEAD_S, TickContext};
 use crate::watchdog::{Watchdog, WatchdogSettings};
 use crate::zone_client::{RegionStatus, ZoneClient};
 use crate::{
@@ -32,9 +32,9 @@ pub struct Monitor {
     pub(crate) regions: RegionStates,
     pub(crate) now: Placement,
     /// The placement after the lookahead time, for the direction-aware law.
-    predicted: Option<Placement>,
+    pub(crate) predicted: Option<Placement>,
     /// The chain at the program's velocities at override 1, for the laws that need it.
-    intent: Option<ChainState>,
+    pub(crate) intent: Option<ChainState>,
     pub(crate) stopping_law: Option<StoppingLaw>,
     pub(crate) clearances: RegionClearances,
     /// The motion since the previous tick.
@@ -125,7 +125,7 @@ impl Monitor {
             let Self { regions, clearances, log, .. } = self;
             let status = |r: RegionId| RegionStatus {
                 is_active: regions.is_active(r),
-                is_measured: regions.measured[r.0],
+                is_measured: regions.get(r).is_measured(),
                 zone: regions.get(r).presence,
                 stops_outside: clearances.get(r).is_none_or(|c| c.stops_outside),
             };
@@ -255,11 +255,12 @@ impl Monitor {
 
     fn check_sources(&mut self, s: &Snapshot) -> Result<(), Fault> {
         self.source_check.update(&self.config.sources, s.sources, s.now_s, self.config.laws.stale_s);
-        self.regions.choose_measured(&self.config);
         for &DynamicRegion { region, source } in &self.now.dynamic_regions {
-            match self.source_check.status(source.0) {
+            let status = self.source_check.status(source.0);
+            self.regions.set_placed(region, matches!(status, SourceStatus::Valid));
+            match status {
                 SourceStatus::Valid => {}
-                _ if !self.regions.is_active(region) => self.regions.measured[region.0] = false,
+                _ if !self.regions.is_active(region) => {}
                 SourceStatus::Lost => return Err(Fault::Source { region }),
                 SourceStatus::Jumped => return Err(Fault::SourceJump { region }),
             }
@@ -316,7 +317,6 @@ impl Monitor {
             last_override,
             ..
         } = self;
-        let direction = DirectionSettings::default();
         now.place(config, s, watchdog.velocity());
         sweep.advance_to(config, now, dt_s, s.sources);
         if let Some(state) = intent {
@@ -327,7 +327,7 @@ impl Monitor {
             }
             config.chain.forward_motion(state);
             if let Some(predicted) = predicted {
-                predicted.place_ahead(config, s, &state.qd, direction.lookahead_s);
+                predicted.place_ahead(config, s, &state.qd, LOOKAHEAD_S);
             }
         }
         if let (Some(stopping_law), Some(intent)) = (stopping_law.as_mut(), intent.as_ref()) {
@@ -352,15 +352,9 @@ impl Monitor {
             predicted: predicted.as_ref(),
             intent: intent.as_ref(),
             last_override: last_override.unwrap_or(0.0),
-            direction,
         };
-        let override_law = OverrideLaw {
-            tick,
-            stopping_law: stopping_law.as_ref(),
-            max_region_travel_m: max_region_travel_m(now, s, stopping_law.as_ref()),
-            settings: OverrideLawSettings::default(),
-        };
-        clearances.measure(config, &regions.measured, now, &override_law, sweep.extra_reach_for_travel());
+        let law = OverrideLaw::new(tick, stopping_law.as_ref());
+        clearances.measure(config, regions.as_slice(), now, &law, sweep.extra_reach_for_travel());
     }
 
     fn conclude(&mut self, s: &Snapshot, dt_s: f64) -> TickReport {

@@ -1,12 +1,16 @@
 //! Queries of a monitor between its ticks.
 
 use elbowroom_kinematics::ChainState;
+use elbowroom_proximity::separation_within;
 use elbowroom_spatial::Pose;
 
 use crate::attached_volumes::AttachedVolumes;
 use crate::distance_to_guarded::distance_to_guarded;
+use crate::override_law::OverrideLaw;
 use crate::point_motion::{LinkPoint, region_point_motion};
 use crate::region_clearance::RegionClearance;
+use crate::tick_context::TickContext;
+use crate::warm_start_cache::IndexedShape;
 use crate::zone_client::ZoneClient;
 use crate::{
     Configuration, Event, ExchangeState, Fault, Monitor, RegionId, RegionKind, SlotGrants, SlotId, Snapshot,
@@ -53,12 +57,31 @@ impl Monitor {
         self.log.as_slice()
     }
 
-    /// The virtual TCPs of the last tick: for every region near the robot, the point that requests the smallest
-    /// override.
+    /// The virtual TCPs of the last tick, whose snapshot was `s`: for every region near the robot, the point that requests
+    /// the smallest override. Regions that the tick did not have to measure are measured here.
     pub fn virtual_tcps<'a>(&'a self, s: &'a Snapshot<'a>) -> impl Iterator<Item = VirtualTcp> + 'a {
-        let active =
-            self.clearances.near().iter().map(|r| RegionId(*r as usize)).filter(|r| self.regions.is_active(*r));
-        active.filter_map(|r| self.clearances.get(r)).map(|c| self.virtual_tcp(c, s))
+        let measured = self.clearances.near().iter().map(|r| RegionId(*r as usize));
+        let measured = measured.filter_map(|r| Some((r, *self.clearances.get(r)?)));
+        let kept = self.clearances.kept().filter_map(|r| Some((r, self.clearance_of_kept(r, s)?)));
+        let active = measured.chain(kept).filter(|(r, _)| self.regions.is_active(*r));
+        active.map(|(_, clearance)| self.virtual_tcp(&clearance, s))
+    }
+
+    fn clearance_of_kept(&self, region: RegionId, s: &Snapshot<'_>) -> Option<RegionClearance> {
+        let tick = TickContext {
+            config: &self.config,
+            snapshot: s,
+            now: &self.now,
+            predicted: self.predicted.as_ref(),
+            intent: self.intent.as_ref(),
+            last_override: self.last_override.unwrap_or(0.0),
+        };
+        let law = OverrideLaw::new(tick, self.stopping_law.as_ref());
+        let query = self.clearances.query(&self.config, &self.now, &law, self.sweep.extra_reach_for_travel());
+        let separation = |volume: IndexedShape<'_>, region: IndexedShape<'_>, limit_m| {
+            separation_within(volume.shape, volume.in_world, region.shape, region.in_world, limit_m)
+        };
+        query.measure(region.0, f64::INFINITY, separation).clearance
     }
 
     /// Distance (m) from the region to the closest volume that it guards against, at the state of the last tick; `None`

@@ -10,7 +10,7 @@ use crate::point_motion::max_speed_along;
 use crate::recovery::{RecoverySettings, border_speed, leads_out};
 use crate::region_approach::{RegionApproach, TurningMotion};
 use crate::stopping::{StoppingLaw, StoppingQuery};
-use crate::tick_context::TickContext;
+use crate::tick_context::{LEAVING_SPEED, LOOKAHEAD_S, TickContext};
 use crate::volume_region_pair::{RequestedOverride, VolumeRegionPair};
 use crate::{RegionKind, Snapshot, SourceState};
 
@@ -55,9 +55,18 @@ enum Direction {
     Recovering,
 }
 
-impl OverrideLaw<'_> {
-    /// The override that a pair requests. `so_far` is the smallest request of other pairs: a request above it need not be
-    /// exact.
+impl<'a> OverrideLaw<'a> {
+    pub(crate) fn new(tick: TickContext<'a>, stopping_law: Option<&'a StoppingLaw>) -> Self {
+        Self {
+            tick,
+            stopping_law,
+            max_region_travel_m: max_region_travel_m(tick.now, tick.snapshot, stopping_law),
+            settings: OverrideLawSettings::default(),
+        }
+    }
+
+    /// The override that a pair requests. `so_far` is the smallest request of other pairs: a request of at least that
+    /// need not be exact.
     pub(crate) fn requested_override(&self, pair: &VolumeRegionPair, so_far: f64) -> RequestedOverride {
         let v0 = self.tick.snapshot.programmed_override;
         let region = &self.tick.config.regions[pair.region.0];
@@ -91,24 +100,50 @@ impl OverrideLaw<'_> {
         self.tick.predicted.is_none() && self.tick.intent.is_none()
     }
 
+    /// Lower bounds of the requests of all pairs of a region whose distances are at least `lower_m` (m), if volumes come
+    /// to rest within `extra_reach_m` (m).
+    pub(crate) fn least_request(
+        &self,
+        kind: RegionKind,
+        warning_m: f64,
+        lower_m: f64,
+        extra_reach_m: f64,
+    ) -> RequestedOverride {
+        let v0 = self.tick.snapshot.programmed_override;
+        match kind {
+            RegionKind::Monitored { slow_to: None } => RequestedOverride::gradual(v0, v0),
+            RegionKind::Monitored { slow_to: Some(slow) } => {
+                RequestedOverride::gradual(speed_zone(lower_m, warning_m, slow, v0), v0)
+            }
+            RegionKind::Forbidden | RegionKind::Exchange { .. } => {
+                let stops = self.stopping_law.is_none() || lower_m > extra_reach_m;
+                if lower_m > 0.0 && stops {
+                    RequestedOverride::gradual(v0 * warning_factor(lower_m, warning_m), v0)
+                } else {
+                    RequestedOverride::immediate(0.0)
+                }
+            }
+        }
+    }
+
     fn forbidden(&self, pair: &VolumeRegionPair, so_far: f64) -> RequestedOverride {
         let config = self.tick.config;
         let v0 = self.tick.snapshot.programmed_override;
         let warned = v0 * warning_factor(pair.separation.distance, config.regions[pair.region.0].warning_m);
-        // Proving that the request of the warning zone or of another pair is slow enough is cheaper than searching the
-        // limit. With a limited rate of change the override may exceed the request of the zone: then the limit itself is
-        // needed.
-        let max = if config.laws.override_rate > 0.0 { v0 } else { warned.min(so_far) };
+        // With a limited rate of change the override may exceed the request of the zone: then the limit of the
+        // stopping-distance law itself is needed.
+        let is_limited = config.laws.override_rate > 0.0;
+        let (max, enough) = if is_limited { (v0, v0) } else { (warned, warned.min(so_far)) };
         let law = self.stopping_law.map(|law| (law, self.stopping_query(pair, law)));
-        let limit = |margin_m: &dyn Fn(f64) -> f64, max: f64| match &law {
-            None => max,
-            Some((law, query)) => query.map_or(0.0, |q| law.limit(&q.with_margin(margin_m(q.free_m)), max)),
+        // The limit of the stopping-distance law if it is below `enough`.
+        let limit_below = |enough: f64, max: f64, margin_m: &dyn Fn(f64) -> f64| {
+            let (law, query) = law.as_ref()?;
+            let Some(query) = query else { return Some(0.0).filter(|_| enough > 0.0) };
+            law.limit_below(&query.with_margin(margin_m(query.free_m)), enough, max)
         };
-        let held = match limit(&|_| self.settings.stop_margin_m, max) {
-            stopping if stopping < max => {
-                RequestedOverride { speed_override: stopping.min(warned), immediate_limit: stopping }
-            }
-            _ => RequestedOverride::gradual(warned, v0),
+        let held = match limit_below(enough, max, &|_| self.settings.stop_margin_m) {
+            Some(stopping) => RequestedOverride { speed_override: stopping.min(warned), immediate_limit: stopping },
+            None => RequestedOverride::gradual(warned, v0),
         };
         if self.tick.predicted.is_none() || held.speed_override >= v0.min(so_far) {
             return held;
@@ -116,10 +151,9 @@ impl OverrideLaw<'_> {
         match self.direction(pair) {
             Direction::Approaching => held,
             Direction::Leaving => {
-                let max = v0.min(so_far);
                 // A leaving volume keeps only the margin for rounding, however close it is.
-                let stopping = limit(&|free_m| ROUNDING_M.min(0.5 * free_m), max);
-                RequestedOverride::immediate(if stopping < max { stopping } else { v0 })
+                let stopping = limit_below(v0.min(so_far), v0, &|free_m| ROUNDING_M.min(0.5 * free_m));
+                RequestedOverride::immediate(stopping.unwrap_or(v0))
             }
             Direction::Recovering => RequestedOverride::immediate(v0 * config.laws.recovery),
         }
@@ -211,7 +245,7 @@ impl OverrideLaw<'_> {
                 && leads_out(tick, &self.settings.recovery, pair, intent, predicted);
             return if recovers { Direction::Recovering } else { Direction::Approaching };
         };
-        let grown = pair.separation.distance + tick.direction.leaving_speed * tick.direction.lookahead_s;
+        let grown = pair.separation.distance + LEAVING_SPEED * LOOKAHEAD_S;
         let (volume, region) = (&tick.config.volumes[v].shape, &tick.config.regions[r].shape);
         let (volume_predicted, region_predicted) = (&predicted.volume_in_world[v], &predicted.region_in_world[r]);
         let leaves = tick.leaves_along(pair, intent, away)
@@ -222,7 +256,7 @@ impl OverrideLaw<'_> {
 
 /// Upper bound of the travel (m) of all points of all dynamic regions, from their readings until the robot is at
 /// rest; 0 without the stopping-distance law.
-pub(crate) fn max_region_travel_m(now: &Placement, snapshot: &Snapshot<'_>, law: Option<&StoppingLaw>) -> f64 {
+fn max_region_travel_m(now: &Placement, snapshot: &Snapshot<'_>, law: Option<&StoppingLaw>) -> f64 {
     let Some(law) = law else { return 0.0 };
     let travel_m = |dynamic: &DynamicRegion| {
         let source = &snapshot.sources[dynamic.source.0];

@@ -5,7 +5,7 @@ use elbowroom_proximity::{Penetration, Shape, penetration};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
 
 use crate::placement::Placement;
-use crate::tick_context::TickContext;
+use crate::tick_context::{LOOKAHEAD_S, TickContext};
 use crate::volume_region_pair::VolumeRegionPair;
 
 /// Settings of the recovery test.
@@ -107,7 +107,7 @@ fn leads_out_ahead(
     let twist = Twist::of(tick, pair, intent, center);
     let speed =
         tick.now.volume_box[v].extent().length() * 0.5 * twist.angular_velocity.length() + twist.velocity.length();
-    if !(speed > settings.min_decrease_m / tick.direction.lookahead_s) {
+    if !(speed > settings.min_decrease_m / LOOKAHEAD_S) {
         return false;
     }
     let real = tick.volume_point_velocity(&tick.now.chain, v, pair.separation.on_a);

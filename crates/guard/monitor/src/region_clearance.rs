@@ -1,25 +1,28 @@
-//! Broad and narrow phase of a tick (VCD and CPD of Romanelli 2011): which volumes are near which regions, and their
-//! closest points.
+//! Narrow phase of a tick (CPD of Romanelli 2011): the closest points of one region and the volumes that it guards
+//! against, and the override that the laws request for them.
 
-use elbowroom_proximity::Separation;
-use elbowroom_spatial::Vec3;
+use elbowroom_proximity::{Separation, Shape, project_point};
 
-use crate::broad_phase::RegionTree;
 use crate::override_law::OverrideLaw;
 use crate::placement::Placement;
+use crate::region_neighbours::DistanceBounds;
+use crate::region_sweep::TravelBound;
 use crate::rounded_box::RoundedBox;
 use crate::volume_region_pair::{RequestedOverride, VolumeRegionPair};
-use crate::warm_start_cache::{IndexedShape, WarmStartCache};
+use crate::warm_start_cache::IndexedShape;
 use crate::{Configuration, RegionId, RegionKind};
+
+/// Distance (m) beyond the reach of the laws up to which exact distances are computed: what is known of a region then
+/// holds for several ticks.
+const SEARCH_SKIN_M: f64 = 0.03;
+/// Distance (m) beyond the reach of the laws from which a cheap lower bound is enough.
+const BOUND_SKIN_M: f64 = 0.01;
 
 /// Result of the distance queries of one region in one tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RegionClearance {
-    tick: u64,
     /// Distance of the closest guarded volume, m.
     pub(crate) distance: f64,
-    /// Lower bound of that distance in the previous tick, m.
-    pub(crate) previous_distance: f64,
     /// The smallest override that a pair of the region requests.
     pub(crate) requested_override: f64,
     /// Upper limit of the override in this tick; a limited rate of change must not exceed it.
@@ -30,208 +33,123 @@ pub(crate) struct RegionClearance {
     pub(crate) stops_outside: bool,
 }
 
-/// Largest travel since the previous tick, m; pairs within it are measured too.
+/// What the queries of one region have found.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TravelBound {
-    /// Travel of the volumes.
-    pub(crate) volumes_m: f64,
-    /// Travel of volumes and dynamic regions towards each other.
-    pub(crate) relative_m: f64,
+pub(crate) struct MeasuredRegion {
+    /// The clearance, if a guarded volume is near.
+    pub(crate) clearance: Option<RegionClearance>,
+    pub(crate) bounds: DistanceBounds,
+    /// Number of exact distances.
+    pub(crate) pairs: u32,
 }
 
-/// The clearances of all regions in one tick.
-#[derive(Debug)]
-pub(crate) struct RegionClearances {
-    tree: RegionTree,
+/// The query of a region in one tick.
+#[derive(Clone, Copy)]
+pub(crate) struct RegionQuery<'a> {
+    pub(crate) config: &'a Configuration,
+    pub(crate) now: &'a Placement,
+    pub(crate) law: &'a OverrideLaw<'a>,
+    pub(crate) travel: TravelBound,
     /// Enclosing boxes for cheap lower bounds; `None` for a shape without one.
-    region_bounds: Vec<Option<RoundedBox>>,
-    volume_bounds: Vec<Option<RoundedBox>>,
-    /// Regions outside the broad-phase tree: dynamic or unbounded.
-    unindexed: Vec<u32>,
-    warm_starts: WarmStartCache,
-    of_region: Vec<RegionClearance>,
-    near: Vec<u32>,
-    tick: u64,
-    pub(crate) measured_pairs: u32,
+    pub(crate) region_bounds: &'a [Option<RoundedBox>],
+    pub(crate) volume_bounds: &'a [Option<RoundedBox>],
 }
 
-impl RegionClearances {
-    pub(crate) fn new(config: &Configuration, placement: &Placement) -> Self {
-        let reach_box = |r: usize| placement.region_box[r].inflated(config.regions[r].reach());
-        let is_indexed = |r: &usize| config.regions[*r].follow.is_none() && reach_box(*r).extent().is_finite();
-        let (indexed, unindexed): (Vec<usize>, Vec<usize>) = (0..config.regions.len()).partition(is_indexed);
-        let separation = Separation { distance: 0.0, lower_bound: 0.0, on_a: Vec3::ZERO, on_b: Vec3::ZERO };
-        let unmeasured = RegionClearance {
-            tick: 0,
-            distance: 0.0,
-            previous_distance: 0.0,
-            requested_override: 0.0,
-            immediate_limit: 0.0,
-            governing: VolumeRegionPair { region: RegionId(0), volume: 0, separation },
-            stops_outside: true,
-        };
-        Self {
-            tree: RegionTree::new(indexed.into_iter().map(|r| (r as u32, reach_box(r))).collect()),
-            region_bounds: config.regions.iter().map(|r| RoundedBox::around(&r.shape)).collect(),
-            volume_bounds: config.volumes.iter().map(|v| RoundedBox::around(&v.shape)).collect(),
-            unindexed: unindexed.into_iter().map(|r| r as u32).collect(),
-            warm_starts: WarmStartCache::new(config),
-            of_region: vec![unmeasured; config.regions.len()],
-            near: Vec::with_capacity(config.regions.len()),
-            tick: 0,
-            measured_pairs: 0,
-        }
+impl RegionQuery<'_> {
+    /// Distance (m) beyond the warning zone and hysteresis of any static region within which the region can affect any
+    /// volume.
+    pub(crate) fn max_extra_reach_m(&self) -> f64 {
+        let attached = (0..self.config.volumes.len()).filter(|v| self.now.attached.contains(*v));
+        attached.map(|v| self.extra_reach_m(v, false)).fold(0.0, f64::max)
     }
 
-    /// Begins a new tick.
-    pub(crate) fn clear(&mut self) {
-        self.near.clear();
-        self.tick += 1;
-        self.measured_pairs = 0;
+    /// Distance (m) beyond its warning zone and hysteresis within which a region can affect a volume.
+    #[inline]
+    fn extra_reach_m(&self, volume: usize, is_dynamic: bool) -> f64 {
+        let reach = self.law.extra_reach(volume).max(self.travel.volumes);
+        if is_dynamic { reach.max(self.travel.relative) } else { reach }
     }
 
-    /// Regions with a guarded volume near, in no particular order.
-    pub(crate) fn near(&self) -> &[u32] {
-        &self.near
-    }
-
-    /// The region's clearance, if a guarded volume is near.
-    pub(crate) fn get(&self, region: RegionId) -> Option<&RegionClearance> {
-        let clearance = &self.of_region[region.0];
-        (clearance.tick == self.tick && self.tick > 0).then_some(clearance)
-    }
-
-    /// Measures every region of `measured` against the volumes that it guards against, as far as `law` or `travel`
-    /// require.
-    // If it were inlined into the tick, the loop would not keep its bounds in registers.
-    #[inline(never)]
+    /// Measures a region against the volumes that it guards against. `so_far` is the smallest request of other regions: a
+    /// request of at least that need not be exact. `separation` returns the [`Separation`] of a volume and a region within a limit
+    /// (m).
     pub(crate) fn measure(
-        &mut self,
-        config: &Configuration,
-        measured: &[bool],
-        now: &Placement,
-        law: &OverrideLaw<'_>,
-        travel: TravelBound,
-    ) {
-        let mut measurement = Measurement {
-            config,
-            measured,
-            now,
-            law,
-            region_bounds: &self.region_bounds,
-            volume_bounds: &self.volume_bounds,
-            warm_starts: &mut self.warm_starts,
-            of_region: &mut self.of_region,
-            near: &mut self.near,
-            tick: self.tick,
-            pairs: 0,
-            smallest_request: f64::INFINITY,
-        };
-        for volume in (0..config.volumes.len()).filter(|v| now.attached.contains(*v)) {
-            let extra_reach = law.extra_reach(volume).max(travel.volumes_m);
-            self.tree
-                .visit(&now.volume_box[volume].inflated(extra_reach), |r| measurement.visit(r, volume, extra_reach));
-            let extra_reach = extra_reach.max(travel.relative_m);
-            for r in &self.unindexed {
-                measurement.visit(*r as usize, volume, extra_reach);
+        &self,
+        r: usize,
+        so_far: f64,
+        mut separation: impl FnMut(IndexedShape<'_>, IndexedShape<'_>, f64) -> Option<Separation>,
+    ) -> MeasuredRegion {
+        let (config, now) = (self.config, self.now);
+        let region = &config.regions[r];
+        let is_dynamic = region.follow.is_some();
+        let only_closest_matters = self.law.only_closest_matters();
+        // What is known of a region that moves by itself is of no use in the next tick.
+        let (search_skin_m, bound_skin_m) = if is_dynamic { (0.0, 0.0) } else { (SEARCH_SKIN_M, BOUND_SKIN_M) };
+        let bounds = DistanceBounds { lower_m: f64::INFINITY, upper_m: f64::INFINITY };
+        let mut found = MeasuredRegion { clearance: None, bounds, pairs: 0 };
+        for (v, volume) in config.volumes.iter().enumerate() {
+            if !now.attached.contains(v) || !volume.part.counts_for(region.guards) {
+                continue;
             }
-        }
-        self.measured_pairs = measurement.pairs;
-    }
-}
-
-/// The measurement of one tick.
-struct Measurement<'a> {
-    config: &'a Configuration,
-    measured: &'a [bool],
-    now: &'a Placement,
-    law: &'a OverrideLaw<'a>,
-    region_bounds: &'a [Option<RoundedBox>],
-    volume_bounds: &'a [Option<RoundedBox>],
-    warm_starts: &'a mut WarmStartCache,
-    of_region: &'a mut [RegionClearance],
-    near: &'a mut Vec<u32>,
-    tick: u64,
-    pairs: u32,
-    /// The smallest request so far of a region that is not an exchange region.
-    smallest_request: f64,
-}
-
-impl Measurement<'_> {
-    /// Measures one pair if it can have an effect.
-    #[inline]
-    fn visit(&mut self, r: usize, v: usize, extra_reach: f64) {
-        let (region, volume) = (&self.config.regions[r], &self.config.volumes[v]);
-        if !self.measured[r] || !volume.part.counts_for(region.guards) {
-            return;
-        }
-        let clearance = &self.of_region[r];
-        let is_first = clearance.tick != self.tick;
-        let mut limit = region.reach() + extra_reach;
-        if !is_first && self.law.only_closest_matters() {
-            if clearance.distance <= 0.0 {
-                return;
+            let reach_m = region.reach() + self.extra_reach_m(v, is_dynamic);
+            let (mut limit_m, mut enough_m, mut search_m) = (reach_m, reach_m + bound_skin_m, reach_m + search_skin_m);
+            if let Some(clearance) = &found.clearance
+                && only_closest_matters
+            {
+                if clearance.distance <= 0.0 {
+                    break;
+                }
+                (limit_m, enough_m) = (limit_m.min(clearance.distance), enough_m.min(clearance.distance));
+                search_m = search_m.min(clearance.distance);
             }
-            limit = limit.min(clearance.distance);
+            let lower_m = self.lower_bound(r, v, enough_m);
+            if lower_m > enough_m {
+                found.bounds.lower_m = found.bounds.lower_m.min(lower_m);
+                continue;
+            }
+            found.pairs += 1;
+            let on_volume = IndexedShape { index: v, shape: &volume.shape, in_world: &now.volume_in_world[v] };
+            let on_region = IndexedShape { index: r, shape: &region.shape, in_world: &now.region_in_world[r] };
+            let Some(s) = separation(on_volume, on_region, search_m) else {
+                found.bounds.lower_m = found.bounds.lower_m.min(search_m);
+                continue;
+            };
+            found.bounds.include(&s, || overlap_bound(on_volume, on_region));
+            if s.distance > limit_m {
+                continue;
+            }
+            self.add(&mut found.clearance, VolumeRegionPair { region: RegionId(r), volume: v, separation: s }, so_far);
         }
-        if self.is_beyond(r, v, limit) {
-            return;
-        }
-        self.pairs += 1;
-        let found = self.warm_starts.separation(
-            IndexedShape { index: v, shape: &volume.shape, in_world: &self.now.volume_in_world[v] },
-            IndexedShape { index: r, shape: &region.shape, in_world: &self.now.region_in_world[r] },
-            limit,
-        );
-        let Some(separation) = found else { return };
-        self.record(VolumeRegionPair { region: RegionId(r), volume: v, separation }, is_first);
+        found
     }
 
-    /// True if cheap bounds prove that the distance of the pair exceeds `limit`.
+    /// A cheap lower bound of the distance of a pair, m. It is improved until it exceeds `enough_m`.
     #[inline]
-    fn is_beyond(&self, r: usize, v: usize, limit: f64) -> bool {
+    fn lower_bound(&self, r: usize, v: usize, enough_m: f64) -> f64 {
         let now = self.now;
-        if now.region_box[r].distance_squared(&now.volume_box[v]) > limit * limit {
-            return true;
+        let squared = now.region_box[r].distance_squared(&now.volume_box[v]);
+        if squared > enough_m * enough_m {
+            return squared.sqrt();
         }
-        let (Some(region), Some(volume)) = (&self.region_bounds[r], &self.volume_bounds[v]) else { return false };
+        let (Some(region), Some(volume)) = (&self.region_bounds[r], &self.volume_bounds[v]) else { return 0.0 };
         let (in_world, region_in_world) = (&now.volume_in_world[v], &now.region_in_world[r]);
-        volume.distance_bound(in_world, region, region_in_world) > limit
-            || region.distance_bound(region_in_world, volume, in_world) > limit
+        let lower_m = volume.distance_bound(in_world, region, region_in_world);
+        if lower_m > enough_m { lower_m } else { region.distance_bound(region_in_world, volume, in_world) }
     }
 
-    /// Adds a pair to the clearance of its region; `is_first` if it is the first pair of the region in this tick.
-    fn record(&mut self, pair: VolumeRegionPair, is_first: bool) {
-        let of_region = if is_first { f64::INFINITY } else { self.of_region[pair.region.0].requested_override };
+    /// Adds a pair to the clearance of its region.
+    fn add(&self, to: &mut Option<RegionClearance>, pair: VolumeRegionPair, so_far: f64) {
+        let of_region = to.as_ref().map_or(f64::INFINITY, |c| c.requested_override);
         let RequestedOverride { speed_override: requested_override, immediate_limit } =
-            self.law.requested_override(&pair, of_region.min(self.smallest_request));
+            self.law.requested_override(&pair, of_region.min(so_far));
         let distance = pair.separation.distance;
         let is_exchange = matches!(self.config.regions[pair.region.0].kind, RegionKind::Exchange { .. });
-        // The request of an exchange region is void while this robot holds it.
-        if !is_exchange {
-            self.smallest_request = self.smallest_request.min(requested_override);
-        }
         let stops_outside = !is_exchange || self.law.stops_outside(&pair);
-        let clearance = &mut self.of_region[pair.region.0];
-        if is_first {
-            self.near.push(pair.region.0 as u32);
-            // A region that was not near in the previous tick was farther away than its reach.
-            let previous_distance = if clearance.tick + 1 == self.tick {
-                clearance.distance
-            } else {
-                self.config.regions[pair.region.0].reach()
-            };
-            *clearance = RegionClearance {
-                tick: self.tick,
-                distance,
-                previous_distance,
-                requested_override,
-                immediate_limit,
-                governing: pair,
-                stops_outside,
-            };
+        let Some(clearance) = to else {
+            *to =
+                Some(RegionClearance { distance, requested_override, immediate_limit, governing: pair, stops_outside });
             return;
-        }
+        };
         let is_tie = requested_override == clearance.requested_override && distance < clearance.distance;
         if requested_override < clearance.requested_override || is_tie {
             (clearance.requested_override, clearance.governing) = (requested_override, pair);
@@ -240,4 +158,26 @@ impl Measurement<'_> {
         clearance.immediate_limit = clearance.immediate_limit.min(immediate_limit);
         clearance.stops_outside &= stops_outside;
     }
+}
+
+/// Lower bound of the distance (m) that a volume has to travel before it no longer touches a region that it touches: by
+/// a ball inside the volume; 0 if it has none.
+fn overlap_bound(volume: IndexedShape<'_>, region: IndexedShape<'_>) -> f64 {
+    if matches!(region.shape, Shape::Mesh(_)) {
+        return 0.0;
+    }
+    let ball = |center, radius: f64| radius - project_point(region.shape, region.in_world, center).signed_distance;
+    let center = volume.in_world.translation;
+    let depth = match volume.shape {
+        Shape::Sphere(s) => ball(center, s.radius),
+        Shape::Capsule(c) => {
+            let axis = volume.in_world.rotation.z_axis();
+            let along = (region.in_world.translation - center).dot(axis);
+            ball(center + axis * along.clamp(-c.half_length, c.half_length), c.radius)
+        }
+        Shape::Cylinder(c) => ball(center, c.radius.min(c.half_length)),
+        Shape::Cuboid(c) => ball(center, c.half_extents.min_element()),
+        Shape::HalfSpace(_) | Shape::Hull(_) | Shape::Mesh(_) => 0.0,
+    };
+    depth.max(0.0)
 }

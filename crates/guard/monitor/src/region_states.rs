@@ -3,28 +3,16 @@
 use crate::event::EventLog;
 use crate::grid_states::GridStates;
 use crate::placement::Placement;
-use crate::region_clearance::RegionClearances;
+use crate::region_clearances::RegionClearances;
+use crate::region_state::RegionState;
 use crate::region_sweep::RegionSweep;
 use crate::zone_state::{DigitalOutputs, ZoneState};
-use crate::{Configuration, EventKind, Life, RegionId, RegionKind};
-
-/// The state of one region.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RegionState {
-    /// True if the region is switched on.
-    pub(crate) active: bool,
-    /// Reported position of the robot; always outside if the region is inactive.
-    pub(crate) zone: ZoneState,
-    /// Position of the robot, whether or not the region is active.
-    pub(crate) presence: ZoneState,
-}
+use crate::{Configuration, EventKind, RegionId};
 
 /// The regions of a monitor, by their indices, and the digital outputs that they and the grids request.
 #[derive(Debug)]
 pub(crate) struct RegionStates {
     states: Vec<RegionState>,
-    /// Regions that are measured in this tick: active regions, and all exchange regions with a known pose.
-    pub(crate) measured: Vec<bool>,
     /// Regions in whose warning zone the robot is, in this tick and in the previous one.
     warned: Vec<u32>,
     previously_warned: Vec<u32>,
@@ -40,11 +28,8 @@ impl RegionStates {
     /// The initial states: permanent regions are on, temporary regions are off.
     pub(crate) fn new(config: &Configuration) -> Self {
         let count = config.regions.len();
-        let outside = ZoneState::default();
-        let state = |life: Life| RegionState { active: life == Life::Permanent, zone: outside, presence: outside };
         Self {
-            states: config.regions.iter().map(|r| state(r.life)).collect(),
-            measured: vec![false; count],
+            states: config.regions.iter().map(RegionState::new).collect(),
             warned: Vec::with_capacity(count),
             previously_warned: Vec::with_capacity(count),
             switched: Vec::with_capacity(2 * count + 16),
@@ -56,6 +41,10 @@ impl RegionStates {
 
     pub(crate) fn get(&self, region: RegionId) -> &RegionState {
         &self.states[region.0]
+    }
+
+    pub(crate) fn as_slice(&self) -> &[RegionState] {
+        &self.states
     }
 
     pub(crate) fn is_active(&self, region: RegionId) -> bool {
@@ -86,11 +75,9 @@ impl RegionStates {
         }
     }
 
-    /// Selects the regions to measure: active regions and exchange regions.
-    pub(crate) fn choose_measured(&mut self, config: &Configuration) {
-        for ((measured, state), region) in self.measured.iter_mut().zip(&self.states).zip(&config.regions) {
-            *measured = state.active || matches!(region.kind, RegionKind::Exchange { .. });
-        }
+    /// States whether the pose of a region that follows a source is known in this tick.
+    pub(crate) fn set_placed(&mut self, region: RegionId, is_placed: bool) {
+        self.states[region.0].is_placed = is_placed;
     }
 
     /// Updates where the robot is, and logs the changes.
@@ -104,7 +91,10 @@ impl RegionStates {
         std::mem::swap(&mut self.warned, &mut self.previously_warned);
         self.warned.clear();
         let Self { states, warned, previously_warned, just_switched, outputs, .. } = self;
-        let left = previously_warned.iter().filter(|r| clearances.get(RegionId(**r as usize)).is_none());
+        let is_kept = |r: &&u32| clearances.is_kept(RegionId(**r as usize));
+        warned.extend(previously_warned.iter().filter(is_kept));
+        let left = |r: &&u32| !is_kept(r) && clearances.get(RegionId(**r as usize)).is_none();
+        let left = previously_warned.iter().filter(left);
         for r in clearances.near().iter().chain(left) {
             let (id, region) = (RegionId(*r as usize), &config.regions[*r as usize]);
             let state = &mut states[id.0];
@@ -112,7 +102,7 @@ impl RegionStates {
             let mut to = from.next(clearances.get(id).map_or(f64::INFINITY, |c| c.distance), region);
             if let Some(clearance) = clearances.get(id).filter(|_| !to.inside && !just_switched.contains(&id))
                 && let Some(passed_m) =
-                    sweep.passed(config, id, [clearance.previous_distance, clearance.distance], to.warned)
+                    sweep.passed(config, id, [clearances.previous_distance(id), clearance.distance], to.warned)
             {
                 // A region that a volume passed is reported for one tick.
                 to = from.next(passed_m, region);

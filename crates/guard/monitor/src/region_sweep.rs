@@ -10,7 +10,7 @@ use elbowroom_spatial::{Pose, Vec3};
 
 use crate::distance_to_guarded::{BoundedDistance, distance_to_guarded};
 use crate::placement::Placement;
-use crate::region_clearance::TravelBound;
+use crate::volume_travel::VolumeTravel;
 use crate::{AttachError, Configuration, RegionId, SourceState, VolumeId};
 
 /// Size of an unbounded region that rotates, m: the border of a half-space is ignored beyond it.
@@ -54,6 +54,10 @@ pub struct RegionSweep {
     motion_bounds: Vec<f64>,
     /// Memory for updates of the bounds.
     scratch: Vec<f64>,
+    /// The travel of the volumes between two snapshots that were placed.
+    travel: VolumeTravel,
+    /// Distance of the volumes from where they were at the previous snapshot, m.
+    shift_m: f64,
     travel_m: f64,
     /// Number of known snapshots, up to two.
     known: u8,
@@ -75,6 +79,17 @@ pub struct ClosestApproach {
     pub fraction: f64,
     /// Distance at that instant, m.
     pub distance_m: f64,
+}
+
+/// Largest travel since the previous tick, m; pairs within it are measured too.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TravelBound {
+    /// Distance of the volumes from where they were; infinite if that is not known.
+    pub(crate) shift: f64,
+    /// Travel of the volumes.
+    pub(crate) volumes: f64,
+    /// Travel of volumes and dynamic regions towards each other.
+    pub(crate) relative: f64,
 }
 
 /// Settings of the bisection.
@@ -109,6 +124,8 @@ impl RegionSweep {
             to: vec![0.0; dof],
             motion_bounds: vec![0.0; dof],
             scratch: vec![0.0; dof],
+            travel: VolumeTravel::new(config),
+            shift_m: f64::INFINITY,
             travel_m: 0.0,
             known: 0,
             at,
@@ -141,8 +158,9 @@ impl RegionSweep {
     fn update_motion_bounds(&mut self, config: &Configuration) {
         let volumes = self.at.attached.iter(config).map(|(v, in_link)| (v.link, v.radius_at(in_link)));
         update_max_motion_bounds(&config.chain, volumes, &mut self.motion_bounds, &mut self.scratch);
-        // Volumes have changed: the placement is no longer valid.
+        // Volumes have changed: the placements are no longer valid.
         self.fraction = None;
+        self.travel.forget();
     }
 
     /// Advances to the next snapshot, `dt_s` (s) after the last one: joint values (rad, m) and one state per source of
@@ -157,6 +175,7 @@ impl RegionSweep {
         for (motion, dynamic) in self.region_motions.iter_mut().zip(&self.at.dynamic_regions) {
             (motion.from, motion.to) = (motion.to, self.at.region_in_world[dynamic.region.0]);
         }
+        self.shift_m = f64::INFINITY;
         self.step(config, q, dt_s, sources);
         true
     }
@@ -166,6 +185,7 @@ impl RegionSweep {
         for (motion, dynamic) in self.region_motions.iter_mut().zip(&now.dynamic_regions) {
             (motion.from, motion.to) = (motion.to, now.region_in_world[dynamic.region.0]);
         }
+        self.shift_m = self.travel.advance(now);
         self.step(config, &now.chain.q, dt_s, sources);
     }
 
@@ -176,7 +196,7 @@ impl RegionSweep {
         self.known = (self.known + 1).min(2);
         let moved = self.from.iter().zip(&self.to).zip(&self.motion_bounds);
         let travel: f64 = moved.map(|((a, b), bound)| if a == b { 0.0 } else { bound * (b - a).abs() }).sum();
-        self.travel_m = travel + ROUNDING_M;
+        self.travel_m = self.travel.path(self.shift_m, travel, &self.from, &self.to) + ROUNDING_M;
         for (motion, dynamic) in self.region_motions.iter_mut().zip(&self.at.dynamic_regions) {
             let shift = (motion.to.translation - motion.from.translation).length();
             let reported = sources[dynamic.source.0].motion.velocity.length() * dt_s;
@@ -206,10 +226,14 @@ impl RegionSweep {
     /// snapshot; 0 (nothing to search) if the motion is not known.
     pub(crate) fn extra_reach_for_travel(&self) -> TravelBound {
         if self.known < 2 {
-            return TravelBound { volumes_m: 0.0, relative_m: 0.0 };
+            return TravelBound { shift: self.shift_m, volumes: 0.0, relative: 0.0 };
         }
         let finite = self.region_motions.iter().map(|m| m.travel_m).filter(|t| t.is_finite());
-        TravelBound { volumes_m: self.travel_m, relative_m: self.travel_m + finite.fold(0.0, f64::max) }
+        TravelBound {
+            shift: self.shift_m,
+            volumes: self.travel_m,
+            relative: self.travel_m + finite.fold(0.0, f64::max),
+        }
     }
 
     /// Distance (m) of the region from the guarded volumes at the last snapshot; `None` if it exceeds `limit`.

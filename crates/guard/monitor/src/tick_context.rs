@@ -8,20 +8,10 @@ use crate::point_motion::{LinkPoint, region_point_motion};
 use crate::volume_region_pair::VolumeRegionPair;
 use crate::{Configuration, RegionId, Snapshot};
 
-/// Settings of the direction-aware law and of recovery.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct DirectionSettings {
-    /// Prediction time along the program's velocities, s.
-    pub(crate) lookahead_s: f64,
-    /// Smallest rate at which the distance of a leaving volume grows, m/s.
-    pub(crate) leaving_speed: f64,
-}
-
-impl Default for DirectionSettings {
-    fn default() -> Self {
-        Self { lookahead_s: 0.01, leaving_speed: 5e-4 }
-    }
-}
+/// Prediction time of the direction-aware law along the program's velocities, s.
+pub(crate) const LOOKAHEAD_S: f64 = 0.01;
+/// Smallest rate at which the distance of a leaving volume grows, m/s.
+pub(crate) const LEAVING_SPEED: f64 = 5e-4;
 
 /// The state of the robot and the regions in one tick.
 #[derive(Clone, Copy)]
@@ -29,13 +19,12 @@ pub(crate) struct TickContext<'a> {
     pub(crate) config: &'a Configuration,
     pub(crate) snapshot: &'a Snapshot<'a>,
     pub(crate) now: &'a Placement,
-    /// The placement after [`DirectionSettings::lookahead_s`], for the direction-aware law.
+    /// The placement after [`LOOKAHEAD_S`], for the direction-aware law.
     pub(crate) predicted: Option<&'a Placement>,
     /// The chain at the program's velocities at override 1, for the laws that need it.
     pub(crate) intent: Option<&'a ChainState>,
     /// The override of the last tick, which the robot may still be executing.
     pub(crate) last_override: f64,
-    pub(crate) direction: DirectionSettings,
 }
 
 impl TickContext<'_> {
@@ -53,6 +42,6 @@ impl TickContext<'_> {
     pub(crate) fn leaves_along(&self, pair: &VolumeRegionPair, intent: &ChainState, away: Vec3) -> bool {
         let region_velocity = self.region_point_velocity(pair.region, pair.separation.on_b);
         let velocity = |state| self.volume_point_velocity(state, pair.volume, pair.separation.on_a) - region_velocity;
-        velocity(intent).dot(away) > self.direction.leaving_speed && velocity(&self.now.chain).dot(away) >= 0.0
+        velocity(intent).dot(away) > LEAVING_SPEED && velocity(&self.now.chain).dot(away) >= 0.0
     }
 }

@@ -209,8 +209,9 @@ impl GuardedRobot {
         self.own.age().is_none_or(|age| age > Micros::from_seconds(self.cell.monitoring.laws.stale_s))
     }
 
-    /// Computes the override for the joint values that arrived last. `now` is on this process's clock.
-    pub(super) fn tick(&mut self, now: Micros) -> TickReport {
+    /// Computes the override for the joint values that arrived last, and fills the sample if `is_status_due`: it takes
+    /// longer than a tick. `now` is on this process's clock.
+    pub(super) fn tick(&mut self, now: Micros, is_status_due: bool) -> TickReport {
         self.switch_regions();
         let is_attached = self.attach();
         self.place_sources(now);
@@ -237,7 +238,9 @@ impl GuardedRobot {
             recorder.tick(seconds(now), &snapshot, &report, self.monitor.monitor());
         }
         let has_jumped = matches!(report.reason, OverrideReason::Fault(Fault::TooFast { .. }));
-        self.sample.fill(self.monitor.monitor(), &snapshot, &report);
+        if is_status_due {
+            self.sample.fill(self.monitor.monitor(), &snapshot, &report);
+        }
         self.sample.add_events(self.monitor.monitor());
         self.notice_standstill(has_jumped, now);
         report

@@ -176,17 +176,17 @@ impl NodeTick {
         if !has_joints && !is_stale {
             return None;
         }
-        let report = self.guarded.tick(now);
+        let is_status_due = self.published.is_none_or(|at| now - at >= STATUS_PERIOD);
+        let report = self.guarded.tick(now, is_status_due);
         self.health.ticks += 1;
         self.health.stale += u64::from(is_stale);
         self.health.tick_max_us = self.health.tick_max_us.max(began.elapsed().as_micros() as u64);
-        self.put(&report, now);
+        self.put(&report, now, is_status_due);
         Some(report)
     }
 
-    fn put(&mut self, report: &TickReport, now: Micros) {
+    fn put(&mut self, report: &TickReport, now: Micros, is_status_due: bool) {
         let answer = self.guarded.answer(report);
-        let is_status_due = self.published.is_none_or(|at| now - at >= STATUS_PERIOD);
         let is_report_due =
             self.guarded.interlock_has_news() || self.reported.is_none_or(|at| now - at >= REPORT_PERIOD);
         let Self { guarded, outbox, health, published, reported, .. } = self;

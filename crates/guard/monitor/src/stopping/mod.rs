@@ -213,8 +213,16 @@ impl StoppingLaw {
         self.volumes[volume].any_direction()
     }
 
+    /// [`StoppingLaw::limit`] if it is below `enough`; cheaper if it is not.
+    pub(crate) fn limit_below(&self, query: &StoppingQuery, enough: f64, max: f64) -> Option<f64> {
+        if self.fits(query, &self.phases(enough)) && self.is_safe(query, max) {
+            return None;
+        }
+        Some(self.limit(query, max)).filter(|limit| *limit < enough)
+    }
+
     /// The largest override up to `max` at which the volume stops within the free distance.
-    pub(crate) fn limit(&self, query: &StoppingQuery, max: f64) -> f64 {
+    fn limit(&self, query: &StoppingQuery, max: f64) -> f64 {
         let fits = |c: f64| self.fits(query, &self.phases(c));
         let limit = if fits(max) {
             max
