@@ -16,7 +16,8 @@ use common::{RandomGeometry, XorshiftStar, parts};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_kinematics::{ChainState, LinkId};
 use elbowroom_monitor::{
-    Configuration, ConfigurationParts, Monitor, OverrideReason, Part, Presence, Region, Snapshot, SourceId, SourceState, Volume,
+    Configuration, ConfigurationParts, Monitor, OverrideReason, Part, Presence, Region, Snapshot, SourceId,
+    SourceState, Volume,
 };
 use elbowroom_proximity::Shape;
 use elbowroom_robot::Robot;

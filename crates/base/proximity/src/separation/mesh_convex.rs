@@ -5,16 +5,21 @@
 use elbowroom_spatial::{Pose, Vec3};
 
 use super::core::Core;
-use super::gap::{Gap, rounding};
+use super::gap::{CLOSE, Gap, rounding};
 use super::goal::Goal;
 use super::mesh_continuous_witness::{mesh_continuous_witness, tolerances};
 use super::projections;
 use super::segment::Segment;
 use super::support_features::bounding_sphere;
+use super::tied_triangles::{NearestTriangles, TiedTriangles};
 use crate::TriMesh;
 use crate::bvh::{BoxDistance, LeastHeight};
 use crate::mesh_mesh::QueryStats;
 use crate::triangle::{nearest_on_triangle, segment_triangle};
+use crate::witness_patch::PatchTolerances;
+
+/// Corners of a triangle whose heights over a core differ by less, as a fraction of the coordinates, are level.
+const LEVEL: f64 = 1e-9;
 
 /// The best answer so far.
 struct Best {
@@ -25,6 +30,8 @@ struct Best {
     limit: f64,
     /// Largest difference between tied gaps.
     tie_tolerance: f64,
+    /// Spread from which on the witness points are not unique.
+    ambiguous_from: f64,
     /// Sum of the distances of the witness points of tied triangles.
     spread: f64,
     /// Gap at which the search ends: a gap no larger is sufficient.
@@ -33,20 +40,29 @@ struct Best {
     lower: f64,
     /// Number of measured triangles.
     measured: u32,
+    tied: TiedTriangles,
 }
 
 impl Best {
-    fn new(limit: f64, sufficient: f64, tie_tolerance: f64) -> Self {
-        let lower = f64::INFINITY;
-        Self { gap: None, triangle: 0, limit, tie_tolerance, spread: 0.0, sufficient, lower, measured: 0 }
+    /// Without tolerances, ties do not count.
+    fn new(limit: f64, sufficient: f64, tolerances: Option<PatchTolerances>) -> Self {
+        Self {
+            gap: None,
+            triangle: 0,
+            limit,
+            tie_tolerance: tolerances.map_or(0.0, |t| t.tie),
+            ambiguous_from: tolerances.map_or(f64::INFINITY, |t| t.min_size),
+            spread: 0.0,
+            sufficient,
+            lower: f64::INFINITY,
+            measured: 0,
+            tied: TiedTriangles::new(),
+        }
     }
 
     fn offer(&mut self, triangle: usize, gap: Gap) {
-        if let Some(best) = &self.gap
-            && (best.distance - gap.distance).abs() <= self.tie_tolerance
-        {
-            self.spread += best.on_a.distance(gap.on_a);
-        }
+        self.add_spread(&gap);
+        self.note_tied(triangle, &gap);
         if gap.lower > self.limit {
             return;
         }
@@ -57,11 +73,40 @@ impl Best {
         }
     }
 
+    /// Offers a triangle that is proven not to be nearer.
+    fn offer_tied(&mut self, triangle: usize, gap: Option<Gap>) {
+        if let Some(gap) = gap {
+            self.add_spread(&gap);
+        }
+        if self.tie_tolerance > 0.0 {
+            self.tied.note(triangle);
+        }
+    }
+
+    fn add_spread(&mut self, gap: &Gap) {
+        if let Some(best) = &self.gap
+            && (best.distance - gap.distance).abs() <= self.tie_tolerance
+        {
+            self.spread += best.on_a.distance(gap.on_a);
+        }
+    }
+
+    /// Notes a triangle that may be within twice the tie tolerance of the nearest one.
+    fn note_tied(&mut self, triangle: usize, gap: &Gap) {
+        let margin = 2.0 * self.tie_tolerance;
+        if margin > 0.0 && !(gap.lower > self.limit + margin) {
+            if gap.distance + margin < self.limit {
+                self.tied.clear();
+            }
+            self.tied.note(triangle);
+        }
+    }
+
     fn is_done(&self) -> bool {
         self.gap.is_some_and(|g| g.distance <= self.sufficient)
     }
 
-    fn finish(self) -> Option<Gap> {
+    fn finish(&self) -> Option<Gap> {
         self.gap.map(|g| Gap { lower: self.lower.min(g.distance), ..g })
     }
 
@@ -72,41 +117,74 @@ impl Best {
         match core {
             Core::Point => {
                 let gap = |i| Gap::closed(nearest_on_triangle(t, mesh.corners(i)), t, scale);
-                self.search(mesh, &query, &mut |i, _| Some(gap(i)));
+                self.search(mesh, &query, &mut |i, _| Measured::Gap(gap(i)));
             }
             Core::Segment(half) => {
                 let axis = Segment { middle: t, direction: core_in_mesh.rotation.z_axis(), half: *half };
                 let (p, q) = (axis.at(-half), axis.at(*half));
                 self.search(mesh, &query, &mut |i, _| {
                     let near = segment_triangle(p, q, mesh.corners(i));
-                    Some(Gap::closed(near.on_b, near.on_a, scale))
+                    Measured::Gap(Gap::closed(near.on_b, near.on_a, scale))
                 });
             }
             _ => {
                 let mut triangles = CoreTriangles::new(mesh, core, core_in_mesh, scale);
-                self.search(mesh, &query, &mut |i, limit| triangles.gap(i, limit));
+                self.search(mesh, &query, &mut |i, wanted| triangles.measure(i, &wanted));
             }
         }
     }
 
     /// Offers the gap that `leaf` computes for every triangle that may be within the limit of the core's box.
-    fn search(&mut self, mesh: &TriMesh, query: &BoxDistance, leaf: &mut dyn FnMut(usize, f64) -> Option<Gap>) {
+    fn search(&mut self, mesh: &TriMesh, query: &BoxDistance, leaf: &mut dyn FnMut(usize, Wanted) -> Measured) {
         mesh.bvh.traverse(query, BoxDistance::limit(&mesh.bvh, self.limit), &mut |triangle| {
             self.measured += 1;
-            if let Some(gap) = leaf(triangle, self.limit + self.tie_tolerance) {
-                self.offer(triangle, gap);
+            match leaf(triangle, self.wanted()) {
+                Measured::Beyond => {}
+                Measured::NotNearer(gap) => self.offer_tied(triangle, gap),
+                Measured::Gap(gap) => self.offer(triangle, gap),
             }
             if self.is_done() {
                 return f32::NEG_INFINITY;
             }
-            BoxDistance::limit(&mesh.bvh, self.limit + self.tie_tolerance)
+            BoxDistance::limit(&mesh.bvh, self.limit + 2.0 * self.tie_tolerance)
         });
     }
+
+    fn wanted(&self) -> Wanted {
+        Wanted {
+            limit: self.limit,
+            margin: 2.0 * self.tie_tolerance,
+            nearest: self.gap.map_or(f64::INFINITY, |gap| gap.distance),
+            tied_points: self.tie_tolerance > 0.0 && self.spread <= self.ambiguous_from,
+        }
+    }
+}
+
+/// What the search needs to know about a triangle.
+#[derive(Debug, Clone, Copy)]
+struct Wanted {
+    /// Largest gap that counts.
+    limit: f64,
+    /// Gaps above the limit by at most this may be tied with the smallest one.
+    margin: f64,
+    /// The smallest gap so far.
+    nearest: f64,
+    /// Whether the points of a tied gap are needed.
+    tied_points: bool,
+}
+
+/// What was found of a triangle.
+enum Measured {
+    /// Its gap is proven to be above the limit.
+    Beyond,
+    /// Its gap is proven to be no smaller than the smallest one, but for rounding; the gap if its points are wanted.
+    NotNearer(Option<Gap>),
+    Gap(Gap),
 }
 
 /// An upper bound of the gap of a mesh and a convex core: the gap of a triangle that is likely to be near.
 pub(super) fn mesh_core_upper_bound(mesh: &TriMesh, core: &Core, core_in_mesh: &Pose) -> f64 {
-    let mut best = Best::new(f64::INFINITY, f64::INFINITY, 0.0);
+    let mut best = Best::new(f64::INFINITY, f64::INFINITY, None);
     best.search_beside(mesh, core, core_in_mesh);
     best.gap.map_or(f64::INFINITY, |gap| gap.distance + rounding(scale(mesh, core, core_in_mesh)))
 }
@@ -130,11 +208,8 @@ pub(super) fn mesh_core(
 ) -> Option<Gap> {
     // The bound in `Gap::separation` decides; this bound must not pass the limit earlier.
     let (limit, sufficient) = (limit + radius + 2.0 * rounding(radius), radius);
-    let tie_tolerance = match bounding_sphere(core) {
-        Some((radius, _)) if goal.is_continuous() => tolerances(mesh, radius).tie,
-        _ => 0.0,
-    };
-    let mut best = Best::new(limit, sufficient, tie_tolerance);
+    let of_ties = bounding_sphere(core).filter(|_| goal.is_continuous()).map(|(radius, _)| tolerances(mesh, radius));
+    let mut best = Best::new(limit, sufficient, of_ties);
     best.search_beside(mesh, core, core_in_mesh);
     stats.triangles_beside_solids += best.measured;
     // The centre of a hull's bounds may be outside the hull.
@@ -143,12 +218,12 @@ pub(super) fn mesh_core(
     if !best.is_done() && mesh.contains(inside) {
         return Some(Gap::touching(inside, inside));
     }
-    let (triangle, spread) = (best.triangle, best.spread);
     let gap = best.finish()?;
-    if !(tie_tolerance > 0.0 && gap.is_beyond(radius)) {
+    if of_ties.is_none() || !gap.is_beyond(radius) {
         return Some(gap);
     }
-    Some(mesh_continuous_witness(mesh, core, core_in_mesh, gap, triangle, spread, stats))
+    let nearest = NearestTriangles { nearest: best.triangle, tied: &best.tied, spread: best.spread };
+    Some(mesh_continuous_witness(mesh, core, core_in_mesh, gap, &nearest, stats))
 }
 
 /// Triangles beside a core with faces.
@@ -169,23 +244,51 @@ impl<'c> CoreTriangles<'c> {
         Self { mesh, core, core_in_mesh, mesh_in_core: core_in_mesh.inverse(), scale, toward_mesh: None }
     }
 
-    /// The gap of a triangle in the mesh's frame; `None` if it is proven to be above the limit.
-    fn gap(&mut self, triangle: usize, limit: f64) -> Option<Gap> {
+    /// The gap of a triangle in the mesh's frame.
+    fn measure(&mut self, triangle: usize, wanted: &Wanted) -> Measured {
         let corners = self.mesh.corners(triangle).map(|p| self.mesh_in_core.transform_point(p));
         // The rounding of the transformation back is subtracted from the lower bound below.
-        let limit = limit + 2.0 * rounding(self.scale);
+        let limit = wanted.limit + 2.0 * rounding(self.scale);
+        let reach_limit = limit + wanted.margin;
+        let (mut start, mut is_not_nearer) = (Core::Triangle(corners).middle(), false);
         if let Some((direction, reach)) = self.toward_mesh {
-            let [p, q, r] = corners.map(|corner| corner.dot(direction));
-            if p.min(q).min(r) - reach - rounding(self.scale) > limit {
-                return None;
+            let heights = corners.map(|corner| corner.dot(direction) - reach);
+            let above = heights[0].min(heights[1]).min(heights[2]);
+            if above - rounding(self.scale) > reach_limit {
+                return Measured::Beyond;
+            }
+            // Whether nearly touching triangles touch, and where, does not depend on the triangles before.
+            if above > CLOSE * self.scale {
+                is_not_nearer = above >= wanted.nearest;
+                start = lowest_points(corners, heights, above + LEVEL * self.scale).unwrap_or(start);
+            }
+            if is_not_nearer && !wanted.tied_points {
+                return Measured::NotNearer(None);
             }
         }
-        let gap = projections::distance(&Core::Triangle(corners), self.core, &Pose::IDENTITY, limit)?;
-        self.toward_mesh = (gap.on_a - gap.on_b).try_normalize().map(|d| (d, self.core.reach(d)));
-        let back = |p| self.core_in_mesh.transform_point(p);
+        let core = Core::Triangle(corners);
+        let Some(gap) = projections::distance_from(&core, self.core, &Pose::IDENTITY, start, reach_limit) else {
+            return Measured::Beyond;
+        };
         let lower = (gap.lower - rounding(self.scale)).max(0.0);
-        Some(Gap { on_a: back(gap.on_a), on_b: back(gap.on_b), lower, ..gap })
+        let back = |p| self.core_in_mesh.transform_point(p);
+        let in_mesh = Gap { on_a: back(gap.on_a), on_b: back(gap.on_b), lower, ..gap };
+        if is_not_nearer {
+            return Measured::NotNearer(Some(in_mesh));
+        }
+        // Ties have no influence on the distance.
+        if !(gap.lower > limit) {
+            self.toward_mesh = (gap.on_a - gap.on_b).try_normalize().map(|d| (d, self.core.reach(d)));
+        }
+        Measured::Gap(in_mesh)
     }
+}
+
+/// The middle of the corners that are not above `highest`.
+fn lowest_points(corners: [Vec3; 3], heights: [f64; 3], highest: f64) -> Option<Vec3> {
+    let lowest = || corners.iter().zip(heights).filter(|(_, height)| *height <= highest);
+    let count = lowest().count();
+    (count > 0).then(|| lowest().fold(Vec3::ZERO, |sum, (corner, _)| sum + *corner) / count as f64)
 }
 
 /// The gap from the mesh's lowest point over a half-space, in the half-space's frame.

@@ -19,6 +19,7 @@ mod separating_axes;
 mod settings;
 mod sphere;
 mod support_features;
+mod tied_triangles;
 
 pub(crate) use convex::convex;
 pub(crate) use gap::rounding;

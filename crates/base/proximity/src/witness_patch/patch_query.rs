@@ -27,6 +27,11 @@ pub(crate) struct PatchPoints {
 }
 
 impl PatchQuery {
+    /// True if a polygon of the first shape with these corners has a point within the tolerance of its end.
+    pub fn reaches_top(&self, corners: [Vec3; 3]) -> bool {
+        corners.iter().any(|p| p.dot(self.direction) >= self.ends[0] - self.tolerance)
+    }
+
     /// The pair of points, one on each face, that are within the tolerance of the ends, opposite each other, and nearest
     /// to the anchor.
     pub fn closest_points(&self, of_a: &Polygon, of_b: &Polygon) -> Option<PatchPoints> {

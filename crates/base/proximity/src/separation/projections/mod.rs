@@ -39,8 +39,12 @@ enum Outcome {
 
 /// Distance of two cores in the frame of the second; `None` if it is proven to be above `limit`.
 pub(crate) fn distance(a: &Core, b: &Core, a_in_b: &Pose, limit: f64) -> Option<Gap> {
+    distance_from(a, b, a_in_b, a_in_b.transform_point(a.middle()), limit)
+}
+
+/// Like [`distance`]; the search begins at `start`, a point of the first core.
+pub(crate) fn distance_from(a: &Core, b: &Core, a_in_b: &Pose, start: Vec3, limit: f64) -> Option<Gap> {
     let cores = CorePair::new(a, b, a_in_b);
-    let start = a_in_b.transform_point(a.middle());
     let mut before = None;
     if a.has_closed_projection() && b.has_closed_projection() {
         match search(&cores, start, limit, ITERATIONS) {
