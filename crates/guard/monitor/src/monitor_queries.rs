@@ -58,26 +58,33 @@ impl Monitor {
     }
 
     /// The virtual TCPs of the last tick, whose snapshot was `s`: for every region near the robot, the point that requests
-    /// the smallest override. Regions that the tick did not have to measure are measured here.
+    /// the smallest override. Regions that the tick did not have to measure are measured here; a snapshot without the
+    /// sources of the configuration gives only those that it measured.
     pub fn virtual_tcps<'a>(&'a self, s: &'a Snapshot<'a>) -> impl Iterator<Item = VirtualTcp> + 'a {
         let measured = self.clearances.near().iter().map(|r| RegionId(*r as usize));
-        let measured = measured.filter_map(|r| Some((r, *self.clearances.get(r)?)));
-        let kept = self.clearances.kept().filter_map(|r| Some((r, self.clearance_of_kept(r, s)?)));
-        let active = measured.chain(kept).filter(|(r, _)| self.regions.is_active(*r));
-        active.map(|(_, clearance)| self.virtual_tcp(&clearance, s))
+        let measured = measured.filter(|r| self.is_active(*r)).filter_map(|r| self.clearances.get(r).copied());
+        let is_complete = s.sources.len() == self.config.sources.len();
+        let law = is_complete.then(|| OverrideLaw::new(self.tick_context(s), self.stopping_law.as_ref()));
+        let kept = law.into_iter().flat_map(move |law| {
+            let kept = self.clearances.kept_near().filter(|r| self.is_active(*r));
+            kept.filter_map(move |r| self.clearance_of_kept(&law, r))
+        });
+        measured.chain(kept).map(|clearance| self.virtual_tcp(&clearance, s))
     }
 
-    fn clearance_of_kept(&self, region: RegionId, s: &Snapshot<'_>) -> Option<RegionClearance> {
-        let tick = TickContext {
+    fn tick_context<'a>(&'a self, s: &'a Snapshot<'a>) -> TickContext<'a> {
+        TickContext {
             config: &self.config,
             snapshot: s,
             now: &self.now,
             predicted: self.predicted.as_ref(),
             intent: self.intent.as_ref(),
             last_override: self.last_override.unwrap_or(0.0),
-        };
-        let law = OverrideLaw::new(tick, self.stopping_law.as_ref());
-        let query = self.clearances.query(&self.config, &self.now, &law, self.sweep.extra_reach_for_travel());
+        }
+    }
+
+    fn clearance_of_kept(&self, law: &OverrideLaw<'_>, region: RegionId) -> Option<RegionClearance> {
+        let query = self.clearances.query(&self.config, &self.now, law, self.sweep.extra_reach_for_travel());
         let separation = |volume: IndexedShape<'_>, region: IndexedShape<'_>, limit_m| {
             separation_within(volume.shape, volume.in_world, region.shape, region.in_world, limit_m)
         };

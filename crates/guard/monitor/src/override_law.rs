@@ -152,7 +152,8 @@ impl<'a> OverrideLaw<'a> {
             Direction::Approaching => held,
             Direction::Leaving => {
                 // A leaving volume keeps only the margin for rounding, however close it is.
-                let stopping = limit_below(v0.min(so_far), v0, &|free_m| ROUNDING_M.min(0.5 * free_m));
+                let enough = if is_limited { v0 } else { v0.min(so_far) };
+                let stopping = limit_below(enough, v0, &|free_m| ROUNDING_M.min(0.5 * free_m));
                 RequestedOverride::immediate(stopping.unwrap_or(v0))
             }
             Direction::Recovering => RequestedOverride::immediate(v0 * config.laws.recovery),

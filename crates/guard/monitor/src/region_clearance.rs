@@ -60,7 +60,9 @@ impl RegionQuery<'_> {
     /// volume.
     pub(crate) fn max_extra_reach_m(&self) -> f64 {
         let attached = (0..self.config.volumes.len()).filter(|v| self.now.attached.contains(*v));
-        attached.map(|v| self.extra_reach_m(v, false)).fold(0.0, f64::max)
+        // A reach of NaN has no bound.
+        let reach = |v| if self.law.extra_reach(v).is_nan() { f64::INFINITY } else { self.extra_reach_m(v, false) };
+        attached.map(reach).fold(0.0, f64::max)
     }
 
     /// Distance (m) beyond its warning zone and hysteresis within which a region can affect a volume.

@@ -16,8 +16,8 @@ const SKIN_M: f64 = 0.1;
 /// Allowance for rounding errors of distances and travels, m.
 const ROUNDING_M: f64 = 1e-9;
 
-/// Bounds of the distance between a region and the closest volume that it guards against, m. An upper bound below 0 is
-/// the distance by which the volume has to travel before it leaves the region.
+/// Bounds of the distance between a region and the closest volume that it guards against, m. An upper bound below 0 is,
+/// but for its sign, the distance by which the volume has to travel before it leaves the region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DistanceBounds {
     pub(crate) lower_m: f64,
@@ -55,11 +55,9 @@ pub(crate) struct RegionNeighbours {
     regions: Vec<u32>,
     of_region: Vec<Neighbour>,
     /// Number of the list, counted from 1.
-    list: u32,
+    list: u64,
     /// Largest travel of a point of a volume since the list was made, m.
     travelled_m: f64,
-    /// Part of it since the previous tick, m.
-    step_m: f64,
     /// Travel, and reach of the laws in the tick, up to which the list is complete, m.
     complete_to_m: f64,
 }
@@ -68,7 +66,7 @@ pub(crate) struct RegionNeighbours {
 #[derive(Debug, Clone, Copy)]
 struct Neighbour {
     /// The last list that contained the region.
-    list: u32,
+    list: u64,
     /// Bounds when the list was made.
     bounds: DistanceBounds,
 }
@@ -87,7 +85,6 @@ impl RegionNeighbours {
             of_region: vec![Neighbour { list: 0, bounds: DistanceBounds::UNKNOWN }; count],
             list: 1,
             travelled_m: 0.0,
-            step_m: 0.0,
             complete_to_m: f64::NEG_INFINITY,
         }
     }
@@ -95,7 +92,6 @@ impl RegionNeighbours {
     /// Follows the volumes to where they are `now`, at most `step_m` (m) from where they were in the previous tick; afterwards each static region that is within `extra_reach_m` (m) of its
     /// reach is listed.
     pub(crate) fn follow(&mut self, now: &Placement, step_m: f64, extra_reach_m: f64) {
-        self.step_m = step_m;
         self.travelled_m += step_m;
         // NaN makes a new list.
         if !(self.travelled_m + extra_reach_m <= self.complete_to_m) {
@@ -106,11 +102,6 @@ impl RegionNeighbours {
     /// The listed regions, in ascending order.
     pub(crate) fn regions(&self) -> &[u32] {
         &self.regions
-    }
-
-    /// Bounds of the distance of a listed region in the previous tick.
-    pub(crate) fn former_bounds(&self, region: u32) -> DistanceBounds {
-        self.of_region[region as usize].bounds.widened(self.travelled_m - self.step_m)
     }
 
     /// Bounds of the distance of a listed region in this tick.
@@ -127,12 +118,6 @@ impl RegionNeighbours {
     /// Keeps the bounds of the distance of a listed region in this tick.
     pub(crate) fn keep(&mut self, region: u32, bounds: DistanceBounds) {
         self.of_region[region as usize].bounds = bounds.widened(ROUNDING_M - self.travelled_m);
-    }
-
-    /// Forgets the bounds of all distances.
-    #[cfg(test)]
-    pub(crate) fn forget(&mut self) {
-        self.of_region.iter_mut().for_each(|neighbour| neighbour.bounds = DistanceBounds::UNKNOWN);
     }
 
     fn make_list(&mut self, now: &Placement, extra_reach_m: f64) {

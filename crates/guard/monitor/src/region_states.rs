@@ -101,8 +101,8 @@ impl RegionStates {
             let from = state.presence;
             let mut to = from.next(clearances.get(id).map_or(f64::INFINITY, |c| c.distance), region);
             if let Some(clearance) = clearances.get(id).filter(|_| !to.inside && !just_switched.contains(&id))
-                && let Some(passed_m) =
-                    sweep.passed(config, id, [clearances.previous_distance(id), clearance.distance], to.warned)
+                && let ends = [clearances.previous_distance(id), clearance.distance]
+                && let Some(passed_m) = sweep.passed(config, id, ends, from.warned || to.warned)
             {
                 // A region that a volume passed is reported for one tick.
                 to = from.next(passed_m, region);

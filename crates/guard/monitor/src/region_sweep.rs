@@ -1,7 +1,7 @@
 //! Continuous check between two snapshots: finds the regions that a volume passes through between them.
 //!
 //! Joints and regions are assumed to move straight from one snapshot to the next. Then no point of a volume travels
-//! farther than `T`, the sum over the joints of motion bound times change. If the distances at two instants sum to
+//! farther than `T`: the sum over the joints of motion bound times change, or its chord and bend (`volume_travel.rs`). If the distances at two instants sum to
 //! more than the travel between them, the volume cannot have touched the region in between. Otherwise the interval
 //! is halved.
 
@@ -283,21 +283,24 @@ impl RegionSweep {
         bisection.best
     }
 
-    /// The smallest distance (m) since the last snapshot if it is inside the region or, unless the robot is `warned`
-    /// anyway, in its warning zone. `ends` are the distances at both snapshots. An undecided interval counts as passed.
+    /// The smallest distance (m) since the last snapshot if it is inside the region or, unless the robot is or was
+    /// `warned` anyway, in its warning zone. `former_m` is a lower bound of the distance at the last snapshot, `now_m` the
+    /// distance now. An undecided interval counts as passed.
     pub(crate) fn passed(
         &mut self,
         config: &Configuration,
         region: RegionId,
-        ends: [f64; 2],
+        [former_m, now_m]: [f64; 2],
         warned: bool,
     ) -> Option<f64> {
         let zone_m = if warned { 0.0 } else { config.regions[region.0].warning_m };
+        let travel = self.travel_bound_of(region);
         // Most ticks end here: the distances at the ends exceed the travel.
-        if ends[0] + ends[1] - 2.0 * zone_m > self.travel_bound_of(region) {
+        if former_m + now_m - 2.0 * zone_m > travel || !travel.is_finite() {
             return None;
         }
-        let mut closest_below = |below_m| self.bisect(config, region, below_m, ends, IN_TICK);
+        let former_m = self.measure(config, region, 0.0, zone_m + travel).lower_bound;
+        let mut closest_below = |below_m| self.bisect(config, region, below_m, [former_m, now_m], IN_TICK);
         let zone = closest_below(zone_m)?;
         let closest =
             if zone_m > 0.0 && zone.distance_m > 0.0 { closest_below(0.0).or(Some(zone)) } else { Some(zone) };

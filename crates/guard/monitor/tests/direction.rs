@@ -163,6 +163,37 @@ fn the_override_changes_at_its_largest_rate() {
     assert!((override_at(&mut m, 0.3, 0.9, 0.0) - 0.2).abs() < 1e-12, "rising");
 }
 
+/// The rate of change does not delay the stopping-distance law of a region that the robot leaves, whatever others request.
+#[test]
+fn a_slower_region_does_not_hide_the_limit_of_another_one() {
+    let stopping = StoppingSettings {
+        reaction_s: 0.048,
+        period_s: 0.002,
+        joint_deceleration: vec![2.0; 6],
+        joint_acceleration: vec![2.0; 6],
+    };
+    let laws = Laws { stopping_distance: Some(stopping), override_rate: 1.0, ..direction_aware() };
+    let slow = Region::sphere("slow", Vec3::ZERO, 0.49).warning(0.05);
+    let slow = slow.kind(RegionKind::Monitored { slow_to: Some(0.1) });
+    let override_beside = |regions: Vec<Region>| {
+        let mut m = point_monitor(regions, laws.clone());
+        let velocity = [0.001, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let mut tick = |now_s, x| {
+            let q = [x, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let s = Snapshot { qd: &velocity, intent: Some(&velocity), ..Snapshot::stationary(now_s, &q) };
+            let report = m.tick(&s);
+            m.forget_position();
+            report.speed_override
+        };
+        assert_eq!(tick(0.0, 3.0), 1.0);
+        tick(0.002, 0.507)
+    };
+    let alone = override_beside(vec![ball()]);
+    assert!(alone > 0.31 && alone < 0.99, "{alone}");
+    assert_eq!(override_beside(vec![slow.clone(), ball()]), alone);
+    assert_eq!(override_beside(vec![ball(), slow]), alone);
+}
+
 #[test]
 fn a_speed_zone_slows_and_never_stops() {
     let zone = ball().kind(RegionKind::Monitored { slow_to: Some(0.3) });

@@ -62,6 +62,20 @@ struct OwnJoints {
 }
 
 impl OwnJoints {
+    /// The input of a tick; `None` before the first joint values.
+    fn snapshot<'a>(&'a self, sources: &'a [SourceState]) -> Option<Snapshot<'a>> {
+        Some(Snapshot {
+            now_s: seconds(self.now),
+            stamp_s: seconds(self.stamp?),
+            q: &self.state.q,
+            qd: &self.state.qd,
+            qdd: &[],
+            programmed_override: self.state.programmed_override,
+            intent: (!self.state.intent.is_empty()).then_some(&self.state.intent),
+            sources,
+        })
+    }
+
     /// Age of the joint values; `None` before the first ones.
     fn age(&self) -> Option<Micros> {
         self.stamp.map(|stamp| self.now - stamp)
@@ -209,23 +223,12 @@ impl GuardedRobot {
         self.own.age().is_none_or(|age| age > Micros::from_seconds(self.cell.monitoring.laws.stale_s))
     }
 
-    /// Computes the override for the joint values that arrived last, and fills the sample if `is_status_due`: it takes
-    /// longer than a tick. `now` is on this process's clock.
-    pub(super) fn tick(&mut self, now: Micros, is_status_due: bool) -> TickReport {
+    /// Computes the override for the joint values that arrived last. `now` is on this process's clock.
+    pub(super) fn tick(&mut self, now: Micros) -> TickReport {
         self.switch_regions();
         let is_attached = self.attach();
         self.place_sources(now);
-        let Some(stamp) = self.own.stamp else { return self.silent() };
-        let snapshot = Snapshot {
-            now_s: seconds(self.own.now),
-            stamp_s: seconds(stamp),
-            q: &self.own.state.q,
-            qd: &self.own.state.qd,
-            qdd: &[],
-            programmed_override: self.own.state.programmed_override,
-            intent: (!self.own.state.intent.is_empty()).then_some(&self.own.state.intent),
-            sources: &self.sources,
-        };
+        let Some(snapshot) = self.own.snapshot(&self.sources) else { return silent() };
         let fault = match (self.doubt.is_some_and(Doubt::is_of_regions), is_attached) {
             (true, _) => Some(Fault::Regions),
             // The monitor does not know a volume that the robot carries.
@@ -238,9 +241,6 @@ impl GuardedRobot {
             recorder.tick(seconds(now), &snapshot, &report, self.monitor.monitor());
         }
         let has_jumped = matches!(report.reason, OverrideReason::Fault(Fault::TooFast { .. }));
-        if is_status_due {
-            self.sample.fill(self.monitor.monitor(), &snapshot, &report);
-        }
         self.sample.add_events(self.monitor.monitor());
         self.notice_standstill(has_jumped, now);
         report
@@ -258,13 +258,12 @@ impl GuardedRobot {
         }
     }
 
-    /// Reports a stop before the first joint values.
-    fn silent(&mut self) -> TickReport {
-        let reason = OverrideReason::Fault(Fault::Stale);
-        let report =
-            TickReport { stamp_s: 0.0, speed_override: 0.0, reason, governing: None, outputs: 0, measured_pairs: 0 };
-        self.sample.fill_without_input(&report);
-        report
+    /// Fills the sample with the result of the last tick, which takes longer than a tick.
+    pub(super) fn fill_sample(&mut self, report: &TickReport) {
+        match self.own.snapshot(&self.sources) {
+            Some(snapshot) => self.sample.fill(self.monitor.monitor(), &snapshot, report),
+            None => self.sample.fill_without_input(report),
+        }
     }
 
     /// Makes the answer to the controller.
@@ -365,4 +364,10 @@ fn not_set_back(before: &SourceState, next: SourceState) -> SourceState {
 
 fn seconds(time: Micros) -> f64 {
     time.0 as f64 * 1e-6
+}
+
+/// The stop before the first joint values.
+fn silent() -> TickReport {
+    let reason = OverrideReason::Fault(Fault::Stale);
+    TickReport { stamp_s: 0.0, speed_override: 0.0, reason, governing: None, outputs: 0, measured_pairs: 0 }
 }

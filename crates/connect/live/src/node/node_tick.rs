@@ -176,20 +176,21 @@ impl NodeTick {
         if !has_joints && !is_stale {
             return None;
         }
-        let is_status_due = self.published.is_none_or(|at| now - at >= STATUS_PERIOD);
-        let report = self.guarded.tick(now, is_status_due);
+        let report = self.guarded.tick(now);
         self.health.ticks += 1;
         self.health.stale += u64::from(is_stale);
         self.health.tick_max_us = self.health.tick_max_us.max(began.elapsed().as_micros() as u64);
-        self.put(&report, now, is_status_due);
+        self.put(&report, now);
         Some(report)
     }
 
-    fn put(&mut self, report: &TickReport, now: Micros, is_status_due: bool) {
+    fn put(&mut self, report: &TickReport, now: Micros) {
         let answer = self.guarded.answer(report);
         let is_report_due =
             self.guarded.interlock_has_news() || self.reported.is_none_or(|at| now - at >= REPORT_PERIOD);
-        let Self { guarded, outbox, health, published, reported, .. } = self;
+        let is_status_due = self.published.is_none_or(|at| now - at >= STATUS_PERIOD);
+        let Self { guarded, outbox, reported, .. } = self;
+        let mut has_sample = false;
         outbox.put(|outgoing| {
             outgoing.answer = Some(answer);
             if is_report_due {
@@ -197,19 +198,29 @@ impl NodeTick {
                 outgoing.state.extend_from_slice(guarded.interlock_state(now));
                 *reported = Some(now);
             }
-            if is_status_due && !outgoing.has_sample {
-                std::mem::swap(&mut outgoing.sample, &mut guarded.sample);
-                outgoing.has_sample = true;
-                if !Arc::ptr_eq(&outgoing.version, &guarded.version) {
-                    // The region builder holds the former version, so nothing is freed here.
-                    outgoing.version = guarded.version.clone();
-                }
-                (outgoing.t_s, outgoing.sequence) = (now.0 as f64 * 1e-6, guarded.sequence());
-                outgoing.doubt = guarded.doubt;
-                outgoing.table = guarded.table.revision;
-                outgoing.health = std::mem::replace(health, HealthStatus { tick_max_us: 0, ..*health });
-                *published = Some(now);
+            has_sample = outgoing.has_sample;
+        });
+        // The answer does not wait for the status.
+        if is_status_due && !has_sample {
+            self.put_sample(report, now);
+        }
+    }
+
+    fn put_sample(&mut self, report: &TickReport, now: Micros) {
+        let Self { guarded, outbox, health, published, .. } = self;
+        guarded.fill_sample(report);
+        outbox.put(|outgoing| {
+            std::mem::swap(&mut outgoing.sample, &mut guarded.sample);
+            outgoing.has_sample = true;
+            if !Arc::ptr_eq(&outgoing.version, &guarded.version) {
+                // The region builder holds the former version, so nothing is freed here.
+                outgoing.version = guarded.version.clone();
             }
+            (outgoing.t_s, outgoing.sequence) = (now.0 as f64 * 1e-6, guarded.sequence());
+            outgoing.doubt = guarded.doubt;
+            outgoing.table = guarded.table.revision;
+            outgoing.health = std::mem::replace(health, HealthStatus { tick_max_us: 0, ..*health });
+            *published = Some(now);
         });
     }
 }

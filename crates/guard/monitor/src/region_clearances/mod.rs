@@ -29,6 +29,10 @@ pub(crate) struct RegionClearances {
     near: Vec<u32>,
     /// The region that requested the smallest override in the last tick.
     governing: Option<u32>,
+    /// Distance beyond the reach of a region within which it could affect a volume in the last tick, m.
+    extra_reach_m: f64,
+    /// If true, every region near is measured in every tick, and every request is exact. For tests.
+    measures_all: bool,
     tick: u64,
     pub(crate) measured_pairs: u32,
 }
@@ -40,6 +44,8 @@ struct RegionOfTick {
     near_at: u64,
     /// The last tick in which the region was kept without a query.
     kept_at: u64,
+    /// Lower bound of the distance in that tick, m.
+    kept_lower_m: f64,
     clearance: Option<RegionClearance>,
     /// Lower bound of the distance in the tick before `near_at`, m.
     previous_distance: f64,
@@ -57,7 +63,8 @@ impl RegionClearances {
     pub(crate) fn new(config: &Configuration, placement: &Placement) -> Self {
         let count = config.regions.len();
         let dynamic = (0..count).filter(|r| config.regions[*r].follow.is_some());
-        let unknown = RegionOfTick { near_at: 0, kept_at: 0, clearance: None, previous_distance: 0.0 };
+        let unknown =
+            RegionOfTick { near_at: 0, kept_at: 0, kept_lower_m: 0.0, clearance: None, previous_distance: 0.0 };
         let limits = |r: &Region| RegionLimits { kind: r.kind, warning_m: r.warning_m, reach_m: r.reach() };
         Self {
             neighbours: RegionNeighbours::new(config, placement),
@@ -69,6 +76,8 @@ impl RegionClearances {
             of_region: vec![unknown; count],
             near: Vec::with_capacity(count),
             governing: None,
+            extra_reach_m: 0.0,
+            measures_all: false,
             tick: 0,
             measured_pairs: 0,
         }
@@ -97,14 +106,17 @@ impl RegionClearances {
         self.of_region[region.0].previous_distance
     }
 
-    /// True if the region was not measured in this tick because nothing about it has changed.
+    /// True if the region was not measured in this tick because it stays in the same zone and does not govern.
     pub(crate) fn is_kept(&self, region: RegionId) -> bool {
         self.tick > 0 && self.of_region[region.0].kept_at == self.tick
     }
 
-    /// The regions that were kept in this tick. A guarded volume may be near.
-    pub(crate) fn kept(&self) -> impl Iterator<Item = RegionId> + '_ {
-        self.neighbours.regions().iter().map(|r| RegionId(*r as usize)).filter(|r| self.is_kept(*r))
+    /// The regions that were kept in this tick and may have a guarded volume near.
+    pub(crate) fn kept_near(&self) -> impl Iterator<Item = RegionId> + '_ {
+        let is_near =
+            |r: &u32| self.neighbours.bounds(*r).lower_m <= self.limits[*r as usize].reach_m + self.extra_reach_m;
+        let near = self.neighbours.regions().iter().filter(move |r| is_near(r));
+        near.map(|r| RegionId(*r as usize)).filter(|r| self.is_kept(*r))
     }
 
     /// The query of a region, as the tick makes it.
@@ -132,6 +144,7 @@ impl RegionClearances {
         let Self { region_bounds, volume_bounds, .. } = self;
         let query = RegionQuery { config, now, law, travel, region_bounds, volume_bounds };
         let extra_reach_m = query.max_extra_reach_m();
+        self.extra_reach_m = extra_reach_m;
         self.neighbours.follow(now, travel.shift, extra_reach_m);
         let mut measurement = Measurement {
             query,
@@ -144,10 +157,13 @@ impl RegionClearances {
             tick: self.tick,
             pairs: 0,
             extra_reach_m,
+            measures_all: self.measures_all,
             smallest: SmallestRequest { speed_override: f64::INFINITY, region: u32::MAX },
         };
         // The region that governed before is likely to govern again; then most others need no query.
-        if let Some(governing) = self.governing.filter(|r| measurement.neighbours.contains(*r)) {
+        if let Some(governing) =
+            self.governing.filter(|r| !measurement.measures_all && measurement.neighbours.contains(*r))
+        {
             measurement.measure(governing);
         }
         for r in &self.dynamic {
@@ -198,6 +214,7 @@ struct Measurement<'a> {
     pairs: u32,
     /// Distance beyond the reach of a region within which it can affect a volume, m.
     extra_reach_m: f64,
+    measures_all: bool,
     smallest: SmallestRequest,
 }
 
@@ -206,8 +223,10 @@ impl Measurement<'_> {
     fn measure_neighbours(&mut self) {
         for i in 0..self.neighbours.regions().len() {
             let r = self.neighbours.regions()[i];
-            if self.stays(r) {
-                self.of_region[r as usize].kept_at = self.tick;
+            let bounds = self.neighbours.bounds(r);
+            if self.stays(r, bounds) {
+                let of_region = &mut self.of_region[r as usize];
+                (of_region.kept_at, of_region.kept_lower_m) = (self.tick, bounds.lower_m);
             } else {
                 self.measure(r);
             }
@@ -216,11 +235,10 @@ impl Measurement<'_> {
 
     /// True if the region's zone and the override of the tick are the same without a query of this region.
     #[inline]
-    fn stays(&self, r: u32) -> bool {
-        if !self.needs_query(r) {
+    fn stays(&self, r: u32, bounds: DistanceBounds) -> bool {
+        if !self.needs_query(r) || self.measures_all {
             return false;
         }
-        let bounds = self.neighbours.bounds(r);
         let limits = &self.limits[r as usize];
         let step_m = self.query.travel.volumes;
         let DistanceBounds { lower_m, upper_m } = bounds;
@@ -258,11 +276,11 @@ impl Measurement<'_> {
         if !self.needs_query(r) {
             return;
         }
+        let so_far = if self.measures_all { f64::INFINITY } else { self.smallest.so_far(r) };
         let warm_starts = &mut *self.warm_starts;
         let MeasuredRegion { clearance, bounds, pairs } =
-            self.query.measure(index, self.smallest.so_far(r), |volume, region, limit_m| {
-                warm_starts.separation(volume, region, limit_m)
-            });
+            self.query
+                .measure(index, so_far, |volume, region, limit_m| warm_starts.separation(volume, region, limit_m));
         self.pairs += pairs;
         let previous_distance = self.previous_distance(index);
         if self.neighbours.contains(r) {
@@ -280,11 +298,10 @@ impl Measurement<'_> {
 
     /// Lower bound of the distance of a region in the previous tick, m.
     fn previous_distance(&self, index: usize) -> f64 {
-        let RegionOfTick { near_at, kept_at, clearance, .. } = &self.of_region[index];
-        let former_m = self.neighbours.former_bounds(index as u32).lower_m;
+        let RegionOfTick { near_at, kept_at, kept_lower_m, clearance, .. } = &self.of_region[index];
         match clearance {
             Some(clearance) if near_at + 1 == self.tick => clearance.distance,
-            _ if kept_at + 1 == self.tick && former_m.is_finite() => former_m.max(0.0),
+            _ if kept_at + 1 == self.tick => kept_lower_m.max(0.0),
             // A region that was not near in the previous tick was farther away than its reach.
             _ => self.limits[index].reach_m,
         }

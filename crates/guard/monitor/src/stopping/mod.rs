@@ -215,7 +215,9 @@ impl StoppingLaw {
 
     /// [`StoppingLaw::limit`] if it is below `enough`; cheaper if it is not.
     pub(crate) fn limit_below(&self, query: &StoppingQuery, enough: f64, max: f64) -> Option<f64> {
-        if self.fits(query, &self.phases(enough)) && self.is_safe(query, max) {
+        // The limit is rounded down.
+        let resolution = max / f64::from(1 << BISECTION_STEPS);
+        if self.fits(query, &self.phases((enough + resolution).min(max))) && self.is_safe(query, max) {
             return None;
         }
         Some(self.limit(query, max)).filter(|limit| *limit < enough)
