@@ -58,7 +58,8 @@ impl Monitor {
     }
 
     /// The virtual TCPs of the last tick, whose snapshot was `s`: for every region near the robot, the point that requests
-    /// the smallest override. Regions that the tick did not have to measure are measured here; a snapshot without the
+    /// the smallest override; of regions that do not govern the override, a point whose request is not smaller than that
+    /// of the governing one. Regions that the tick did not have to measure are measured here; a snapshot without the
     /// sources of the configuration gives only those that it measured.
     pub fn virtual_tcps<'a>(&'a self, s: &'a Snapshot<'a>) -> impl Iterator<Item = VirtualTcp> + 'a {
         let measured = self.clearances.near().iter().map(|r| RegionId(*r as usize));

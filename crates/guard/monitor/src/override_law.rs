@@ -133,7 +133,7 @@ impl<'a> OverrideLaw<'a> {
         // With a limited rate of change the override may exceed the request of the zone: then the limit of the
         // stopping-distance law itself is needed.
         let is_limited = config.laws.override_rate > 0.0;
-        let (max, enough) = if is_limited { (v0, v0) } else { (warned, warned.min(so_far)) };
+        let (max, so_far) = if is_limited { (v0, v0) } else { (warned, v0.min(so_far)) };
         let law = self.stopping_law.map(|law| (law, self.stopping_query(pair, law)));
         // The limit of the stopping-distance law if it is below `enough`.
         let limit_below = |enough: f64, max: f64, margin_m: &dyn Fn(f64) -> f64| {
@@ -141,19 +141,18 @@ impl<'a> OverrideLaw<'a> {
             let Some(query) = query else { return Some(0.0).filter(|_| enough > 0.0) };
             law.limit_below(&query.with_margin(margin_m(query.free_m)), enough, max)
         };
-        let held = match limit_below(enough, max, &|_| self.settings.stop_margin_m) {
+        let held = match limit_below(so_far.min(max), max, &|_| self.settings.stop_margin_m) {
             Some(stopping) => RequestedOverride { speed_override: stopping.min(warned), immediate_limit: stopping },
             None => RequestedOverride::gradual(warned, v0),
         };
-        if self.tick.predicted.is_none() || held.speed_override >= v0.min(so_far) {
+        if self.tick.predicted.is_none() || held.speed_override >= so_far {
             return held;
         }
         match self.direction(pair) {
             Direction::Approaching => held,
             Direction::Leaving => {
                 // A leaving volume keeps only the margin for rounding, however close it is.
-                let enough = if is_limited { v0 } else { v0.min(so_far) };
-                let stopping = limit_below(enough, v0, &|free_m| ROUNDING_M.min(0.5 * free_m));
+                let stopping = limit_below(so_far, v0, &|free_m| ROUNDING_M.min(0.5 * free_m));
                 RequestedOverride::immediate(stopping.unwrap_or(v0))
             }
             Direction::Recovering => RequestedOverride::immediate(v0 * config.laws.recovery),

@@ -60,15 +60,15 @@ impl RegionQuery<'_> {
     /// volume.
     pub(crate) fn max_extra_reach_m(&self) -> f64 {
         let attached = (0..self.config.volumes.len()).filter(|v| self.now.attached.contains(*v));
-        // A reach of NaN has no bound.
-        let reach = |v| if self.law.extra_reach(v).is_nan() { f64::INFINITY } else { self.extra_reach_m(v, false) };
-        attached.map(reach).fold(0.0, f64::max)
+        attached.map(|v| self.extra_reach_m(v, false)).fold(0.0, f64::max)
     }
 
     /// Distance (m) beyond its warning zone and hysteresis within which a region can affect a volume.
     #[inline]
     fn extra_reach_m(&self, volume: usize, is_dynamic: bool) -> f64 {
-        let reach = self.law.extra_reach(volume).max(self.travel.volumes);
+        let by_law = self.law.extra_reach(volume);
+        // `f64::max` would drop NaN.
+        let reach = if by_law.is_nan() { f64::INFINITY } else { by_law.max(self.travel.volumes) };
         if is_dynamic { reach.max(self.travel.relative) } else { reach }
     }
 

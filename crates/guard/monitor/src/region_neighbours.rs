@@ -141,6 +141,7 @@ impl RegionNeighbours {
         self.unbounded.iter().for_each(|r| add(*r as usize));
         self.regions.sort_unstable();
         self.travelled_m = 0.0;
-        self.complete_to_m = margin_m;
+        // After an infinite reach the list is made again in each tick, until it is short.
+        self.complete_to_m = if margin_m.is_finite() { margin_m } else { f64::NEG_INFINITY };
     }
 }

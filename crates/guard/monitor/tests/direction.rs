@@ -173,8 +173,9 @@ fn a_slower_region_does_not_hide_the_limit_of_another_one() {
         joint_acceleration: vec![2.0; 6],
     };
     let laws = Laws { stopping_distance: Some(stopping), override_rate: 1.0, ..direction_aware() };
-    let slow = Region::sphere("slow", Vec3::ZERO, 0.49).warning(0.05);
-    let slow = slow.kind(RegionKind::Monitored { slow_to: Some(0.1) });
+    let slow = |radius| {
+        Region::sphere("slow", Vec3::ZERO, radius).warning(0.05).kind(RegionKind::Monitored { slow_to: Some(0.1) })
+    };
     let override_beside = |regions: Vec<Region>| {
         let mut m = point_monitor(regions, laws.clone());
         let velocity = [0.001, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -188,10 +189,12 @@ fn a_slower_region_does_not_hide_the_limit_of_another_one() {
         assert_eq!(tick(0.0, 3.0), 1.0);
         tick(0.002, 0.507)
     };
-    let alone = override_beside(vec![ball()]);
-    assert!(alone > 0.31 && alone < 0.99, "{alone}");
-    assert_eq!(override_beside(vec![slow.clone(), ball()]), alone);
-    assert_eq!(override_beside(vec![ball(), slow]), alone);
+    for (ball, slow) in [(ball(), slow(0.49)), (ball().warning(0.0), slow(0.499))] {
+        let alone = override_beside(vec![ball.clone()]);
+        assert!(alone > 0.31 && alone < 0.99, "{alone}");
+        assert_eq!(override_beside(vec![slow.clone(), ball.clone()]), alone);
+        assert_eq!(override_beside(vec![ball, slow]), alone);
+    }
 }
 
 #[test]

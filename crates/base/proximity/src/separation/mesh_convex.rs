@@ -136,7 +136,8 @@ impl Best {
 
     /// Offers the gap that `leaf` computes for every triangle that may be within the limit of the core's box.
     fn search(&mut self, mesh: &TriMesh, query: &BoxDistance, leaf: &mut dyn FnMut(usize, Wanted) -> Measured) {
-        mesh.bvh.traverse(query, BoxDistance::limit(&mesh.bvh, self.limit), &mut |triangle| {
+        let limit = BoxDistance::limit(&mesh.bvh, self.limit + 2.0 * self.tie_tolerance);
+        mesh.bvh.traverse(query, limit, &mut |triangle| {
             self.measured += 1;
             match leaf(triangle, self.wanted()) {
                 Measured::Beyond => {}
@@ -175,7 +176,7 @@ struct Wanted {
 
 /// What was found of a triangle.
 enum Measured {
-    /// Its gap is proven to be above the limit.
+    /// Its gap is proven to be above the limit by more than the margin.
     Beyond,
     /// Its gap is proven to be no smaller than the smallest one, but for rounding; the gap if its points are wanted.
     NotNearer(Option<Gap>),
@@ -260,7 +261,7 @@ impl<'c> CoreTriangles<'c> {
             // Whether nearly touching triangles touch, and where, does not depend on the triangles before.
             if above > CLOSE * self.scale {
                 is_not_nearer = above >= wanted.nearest;
-                start = lowest_points(corners, heights, above + LEVEL * self.scale).unwrap_or(start);
+                start = lowest_points(corners, heights, above + LEVEL * self.scale);
             }
             if is_not_nearer && !wanted.tied_points {
                 return Measured::NotNearer(None);
@@ -284,11 +285,10 @@ impl<'c> CoreTriangles<'c> {
     }
 }
 
-/// The middle of the corners that are not above `highest`.
-fn lowest_points(corners: [Vec3; 3], heights: [f64; 3], highest: f64) -> Option<Vec3> {
+/// The middle of the corners that are not above `highest`, of which there is one at least.
+fn lowest_points(corners: [Vec3; 3], heights: [f64; 3], highest: f64) -> Vec3 {
     let lowest = || corners.iter().zip(heights).filter(|(_, height)| *height <= highest);
-    let count = lowest().count();
-    (count > 0).then(|| lowest().fold(Vec3::ZERO, |sum, (corner, _)| sum + *corner) / count as f64)
+    lowest().fold(Vec3::ZERO, |sum, (corner, _)| sum + *corner) / lowest().count().max(1) as f64
 }
 
 /// The gap from the mesh's lowest point over a half-space, in the half-space's frame.

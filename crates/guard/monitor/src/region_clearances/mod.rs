@@ -298,6 +298,10 @@ impl Measurement<'_> {
 
     /// Lower bound of the distance of a region in the previous tick, m.
     fn previous_distance(&self, index: usize) -> f64 {
+        // Volumes that have been attached since then count as if they had been attached before.
+        if !self.query.travel.shift.is_finite() {
+            return 0.0;
+        }
         let RegionOfTick { near_at, kept_at, kept_lower_m, clearance, .. } = &self.of_region[index];
         match clearance {
             Some(clearance) if near_at + 1 == self.tick => clearance.distance,
