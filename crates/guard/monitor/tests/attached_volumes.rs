@@ -4,8 +4,8 @@ use crate::common;
 use crate::common::{RandomGeometry, XorshiftStar, arm, arm_volumes, configuration, parts};
 use elbowroom_kinematics::LinkId;
 use elbowroom_monitor::{
-    AttachError, Configuration, ConfigurationParts, Fault, Laws, Monitor, OverrideReason, Presence, Region, RegionId,
-    RegionSweep, Snapshot, StoppingSettings, TickReport, Volume, VolumeId,
+    AttachError, Configuration, ConfigurationParts, Fault, Guards, Laws, Monitor, OverrideReason, Presence, Region,
+    RegionId, RegionSweep, Snapshot, StoppingSettings, TickReport, Volume, VolumeId,
 };
 use elbowroom_proximity::{Cuboid, Shape, separation};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
@@ -221,4 +221,32 @@ fn gripped_objects_are_in_the_checksum_and_not_in_that_of_the_robot() {
     assert!(with.checksum() != without.checksum() && with.robot_checksum() == without.robot_checksum());
     let always = of(with_part(Presence::Always));
     assert!(always.robot_checksum() != without.robot_checksum() && always.checksum() != with.checksum());
+}
+
+/// A point, and a small part 15 cm before it, pass a plate of 4 mm between two ticks, after rest before it.
+#[test]
+fn a_plate_passed_just_after_a_volume_was_attached_or_detached_is_reported() {
+    let part = Shape::Sphere(elbowroom_proximity::Sphere { radius: 1e-3 });
+    let volumes = || vec![Volume::tcp(LinkId(6), Vec3::ZERO), Volume::gripped("part", LinkId(6), part.clone())];
+    let plate = Region::cuboid("plate", Vec3::new(1.0, 0.0, -1.0), Vec3::new(4e-3, 2.0, 2.0), Rotation::IDENTITY);
+    let (part, ahead) = (VolumeId(1), Pose::from_translation(Vec3::X * 0.15));
+    for (from, to, attaches) in [(0.993, 1.007, false), (0.84, 0.86, true)] {
+        let regions = vec![plate.clone().warning(0.3).monitored().guards(Guards { tcp: true, tool: true, arm: true })];
+        let mut m = Monitor::new(configuration(common::gantry(), volumes(), regions), None).unwrap();
+        let tick = |m: &mut Monitor, now_s: f64, x: f64| {
+            let (q, qd) = ([x, 0.0, 0.0, 0.0, 0.0, 0.0], [(to - from) / 0.015, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            let report = m.tick(&Snapshot { qd: &qd, ..Snapshot::stationary(now_s, &q) });
+            assert!(!matches!(report.reason, OverrideReason::Fault(_)), "{}", report.reason);
+            m.is_inside(RegionId(0))
+        };
+        if !attaches {
+            m.attach(part, &Pose::from_translation(Vec3::Y * 0.15)).unwrap();
+        }
+        for i in 0..5 {
+            assert!(!tick(&mut m, 0.002 * f64::from(i), from));
+        }
+        let changed = if attaches { m.attach(part, &ahead) } else { m.detach(part) };
+        changed.unwrap();
+        assert!(tick(&mut m, 0.023, to), "from {from} to {to}");
+    }
 }
