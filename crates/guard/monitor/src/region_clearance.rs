@@ -73,8 +73,8 @@ impl RegionQuery<'_> {
     }
 
     /// Measures a region against the volumes that it guards against. `so_far` is the smallest request of other regions: a
-    /// request of at least that need not be exact. `separation` returns the [`Separation`] of a volume and a region within a limit
-    /// (m).
+    /// request of at least that need not be exact. `separation` returns the [`Separation`] of a volume and a region within
+    /// a limit (m).
     pub(crate) fn measure(
         &self,
         r: usize,

@@ -89,8 +89,8 @@ impl RegionNeighbours {
         }
     }
 
-    /// Follows the volumes to where they are `now`, at most `step_m` (m) from where they were in the previous tick; afterwards each static region that is within `extra_reach_m` (m) of its
-    /// reach is listed.
+    /// Follows the volumes to where they are `now`, at most `step_m` (m) from where they were in the previous tick.
+    /// Afterwards each static region that is within `extra_reach_m` (m) of its reach is listed.
     pub(crate) fn follow(&mut self, now: &Placement, step_m: f64, extra_reach_m: f64) {
         self.travelled_m += step_m;
         // NaN makes a new list.

@@ -1,9 +1,9 @@
 //! Continuous check between two snapshots: finds the regions that a volume passes through between them.
 //!
 //! Joints and regions are assumed to move straight from one snapshot to the next. Then no point of a volume travels
-//! farther than `T`: the sum over the joints of motion bound times change, or its chord and bend (`volume_travel.rs`). If the distances at two instants sum to
-//! more than the travel between them, the volume cannot have touched the region in between. Otherwise the interval
-//! is halved.
+//! farther than `T`: the sum over the joints of motion bound times change, or its chord and bend
+//! (`volume_travel.rs`). If the distances at two instants sum to more than the travel between them, the volume cannot
+//! have touched the region in between. Otherwise the interval is halved.
 
 use elbowroom_kinematics::motion_bound::update_max_motion_bounds;
 use elbowroom_spatial::{Pose, Vec3};
@@ -284,8 +284,8 @@ impl RegionSweep {
     }
 
     /// The smallest distance (m) since the last snapshot if it is inside the region or, unless the robot is or was
-    /// `warned` anyway, in its warning zone. `former_m` is a lower bound of the distance at the last snapshot, `now_m` the
-    /// distance now. An undecided interval counts as passed.
+    /// `warned` anyway, in its warning zone. `former_m` is a lower bound of the distance at the last snapshot, `now_m`
+    /// the distance now. An undecided interval counts as passed.
     pub(crate) fn passed(
         &mut self,
         config: &Configuration,

@@ -24,6 +24,16 @@ fn direction_aware() -> Laws {
     Laws { direction_aware: true, ..Laws::default() }
 }
 
+/// Brakes that begin 24 ticks late.
+fn late_brakes() -> StoppingSettings {
+    StoppingSettings {
+        reaction_s: 0.048,
+        period_s: 0.002,
+        joint_deceleration: vec![2.0; 6],
+        joint_acceleration: vec![2.0; 6],
+    }
+}
+
 /// Override of one tick at x on the x axis with the program speed `speed` along x.
 fn override_at(m: &mut Monitor, now_s: f64, x: f64, speed: f64) -> f64 {
     let (q, intent) = ([x, 0.0, 0.0, 0.0, 0.0, 0.0], [speed, 0.0, 0.0, 0.0, 0.0, 0.0]);
@@ -125,13 +135,7 @@ fn plain_distance(m: &mut Monitor, now_s: f64, q: &[f64; 6]) -> f64 {
 
 #[test]
 fn the_stopping_law_stops_outside() {
-    let stopping = StoppingSettings {
-        reaction_s: 0.048,
-        period_s: 0.002,
-        joint_deceleration: vec![2.0; 6],
-        joint_acceleration: vec![2.0; 6],
-    };
-    let laws = Laws { stopping_distance: Some(stopping), ..Laws::default() };
+    let laws = Laws { stopping_distance: Some(late_brakes()), ..Laws::default() };
     // Without a warning zone, the stopping law alone must keep the point outside.
     let mut m = point_monitor(vec![Region::sphere("ball", Vec3::ZERO, 0.5)], laws);
     for speed in [0.2, 1.0, 3.0] {
@@ -166,13 +170,7 @@ fn the_override_changes_at_its_largest_rate() {
 /// The rate of change does not delay the stopping-distance law of a region that the robot leaves, whatever others request.
 #[test]
 fn a_slower_region_does_not_hide_the_limit_of_another_one() {
-    let stopping = StoppingSettings {
-        reaction_s: 0.048,
-        period_s: 0.002,
-        joint_deceleration: vec![2.0; 6],
-        joint_acceleration: vec![2.0; 6],
-    };
-    let laws = Laws { stopping_distance: Some(stopping), override_rate: 1.0, ..direction_aware() };
+    let laws = Laws { stopping_distance: Some(late_brakes()), override_rate: 1.0, ..direction_aware() };
     let slow = |radius| {
         Region::sphere("slow", Vec3::ZERO, radius).warning(0.05).kind(RegionKind::Monitored { slow_to: Some(0.1) })
     };

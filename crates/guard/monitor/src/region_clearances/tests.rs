@@ -215,6 +215,7 @@ fn run(seed: u64, tally: &mut Tally) {
     }
 }
 
+/// `ELBOWROOM_RUNS`: number of runs.
 #[test]
 fn a_monitor_that_keeps_regions_reports_what_one_that_measures_all_regions_reports() {
     let runs: u64 = std::env::var("ELBOWROOM_RUNS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
