@@ -4,6 +4,7 @@ mod against_scene;
 mod boxes;
 mod common;
 mod covers;
+mod edges_before;
 mod extreme_values;
 mod instruction_sets;
 mod point_clouds;

@@ -137,6 +137,9 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
     /// below them.
     #[inline(always)]
     fn obstacles_by_level(&mut self) {
+        if self.touches_as_before() {
+            return;
+        }
         let mut open = std::mem::take(&mut self.workspace.node_obstacles);
         open.clear();
         if !self.any_root_touches(&mut open) {
@@ -146,6 +149,24 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
             }
         }
         self.workspace.node_obstacles = open;
+    }
+
+    /// Tests what ended other segments. True if a sphere touches.
+    #[inline(always)]
+    fn touches_as_before(&mut self) -> bool {
+        let mut place = 0;
+        while let Some(pair) = self.workspace.recent_touches.get(place) {
+            let node = &self.model.robot.nodes[pair.node as usize];
+            let solid = &self.model.obstacles.outer[pair.obstacle as usize];
+            let centre = self.workspace.centre(self.simd, self.model.robot, pair.node);
+            let vector = solid.vector_from_core(self.simd, centre).vector;
+            if self.certainly_touches(vector, node.touching_m + solid.radius) {
+                self.workspace.recent_touches.touched_again(place);
+                return true;
+            }
+            place += 1;
+        }
+        false
     }
 
     /// Tests the roots of all links. True if a sphere touches.
@@ -217,11 +238,11 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         if near & self.request.active == 0 {
             return false;
         }
-        if self.certainly_touches(from.vector, node.touching_m + solid.radius) {
-            return true;
-        }
         let is_leaf = is_leaf(node, pair.node + 1);
-        if is_leaf && self.touching(from.vector, reach) != 0 {
+        if self.certainly_touches(from.vector, node.touching_m + solid.radius)
+            || (is_leaf && self.touching(from.vector, reach) != 0)
+        {
+            self.workspace.recent_touches.add(pair);
             return true;
         }
         let direction = from.vector.plus(from.vector.next_lane());

@@ -11,6 +11,7 @@ mod motion_table;
 mod motion_tests;
 mod pair_table_builder;
 mod placed_centres;
+mod recent_touches;
 mod segment;
 mod several_edges;
 mod single;

@@ -3,6 +3,7 @@
 use super::joint_stretch::JointStretch;
 use super::motion_table::MotionTable;
 use super::placed_centres::PlacedCentres;
+use super::recent_touches::RecentTouches;
 use crate::lanes::{LANES, Row};
 use crate::model::{CoveredRobot, FrameLanes};
 
@@ -42,6 +43,7 @@ pub(crate) struct Workspace {
     pub open: Vec<(u32, u32)>,
     /// Obstacles found by the broad phase.
     pub found: Vec<u32>,
+    pub recent_touches: RecentTouches,
     /// Nodes whose children are still to visit, each with an obstacle.
     pub node_obstacles: Vec<NodeObstacle>,
     /// Pairs of nodes still to visit.
@@ -65,6 +67,7 @@ impl Workspace {
             turned: vec![0.0; robot.chain.steps.len() + 1],
             open: Vec::new(),
             found: Vec::new(),
+            recent_touches: RecentTouches::default(),
             node_obstacles: Vec::new(),
             node_pairs: Vec::new(),
         }
