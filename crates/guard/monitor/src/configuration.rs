@@ -1,5 +1,7 @@
 //! Configuration of a monitor: one robot, its guarded volumes, regions, sources of motion and laws.
 
+use std::collections::HashSet;
+
 use elbowroom_kinematics::{Chain, JointKind};
 use elbowroom_spatial::Pose;
 
@@ -175,7 +177,13 @@ impl Configuration {
         if !self.base_in_world.is_finite() {
             return Err(ConfigError::Base);
         }
-        self.regions.iter().enumerate().try_for_each(|(i, r)| self.validate_region(i, r))?;
+        let mut names = HashSet::new();
+        for region in &self.regions {
+            if !names.insert(&region.name) {
+                return Err(ConfigError::DuplicateRegion(region.name.clone()));
+            }
+            self.validate_region(region)?;
+        }
         self.volumes.iter().try_for_each(|v| self.validate_volume(v))?;
         for source in &self.sources {
             if let Some(why) = source.limits.problem() {
@@ -186,11 +194,8 @@ impl Configuration {
         self.validate_laws()
     }
 
-    fn validate_region(&self, index: usize, region: &Region) -> Result<(), ConfigError> {
+    fn validate_region(&self, region: &Region) -> Result<(), ConfigError> {
         let bad = |why: String| ConfigError::Region { region: region.name.clone(), why };
-        if self.regions[..index].iter().any(|r| r.name == region.name) {
-            return Err(ConfigError::DuplicateRegion(region.name.clone()));
-        }
         if let Some(source) = region.follow
             && source.0 >= self.sources.len()
         {
