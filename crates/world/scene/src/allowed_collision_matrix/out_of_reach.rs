@@ -27,20 +27,29 @@ const MAX_JOINTS: usize = 3;
 /// Largest number of cells per pair.
 const MAX_CELLS: usize = 4000;
 
+/// Least number of parallel jobs, unless there are fewer pairs. Each job makes a workspace, whose size grows with the scene.
+const JOBS: usize = 256;
+
 /// Marks the pairs that are proven to be out of reach.
 pub(crate) fn prove_out_of_reach(scene: &Scene, mut matrix: AllowedCollisionMatrix) -> AllowedCollisionMatrix {
     let start = SceneState::new(scene);
-    let prove = |narrow: &mut NarrowPhase, entry: &mut PairEntry| {
+    let prove = |(narrow, state): &mut (NarrowPhase, SceneState), entry: &mut PairEntry| {
         let required = entry.margin_m + CLEARANCE;
-        // Each pair begins at the same state, so that no proof depends on those before.
-        let search =
-            || BranchAndBound { scene, state: start.clone(), narrow }.least_distance(entry.a, entry.b, required);
+        let search = || {
+            let mut search = BranchAndBound { scene, state, narrow };
+            let least_m = search.least_distance(entry.a, entry.b, required);
+            // Each pair begins at the same state, so that no proof depends on those before.
+            search.reset(&start, [entry.a, entry.b]);
+            least_m
+        };
         if let Some(least_m) = by_reach_spheres(scene, entry.a, entry.b, required).or_else(search) {
             (entry.state, entry.reason) = (PairState::Skipped, Reason::OutOfReach { least_m });
         }
     };
-    let entries = matrix.entries_mut().par_iter_mut().with_max_len(1);
-    entries.filter(|e| e.state == PairState::Tested).for_each_init(|| NarrowPhase::new(scene), prove);
+    let entries = matrix.entries_mut();
+    let per_job = entries.len().div_ceil(JOBS).max(1);
+    let tested = entries.par_iter_mut().with_max_len(per_job).filter(|e| e.state == PairState::Tested);
+    tested.for_each_init(|| (NarrowPhase::new(scene), start.clone()), prove);
     matrix
 }
 
@@ -138,7 +147,7 @@ struct JointCell {
 
 struct BranchAndBound<'s, 'n> {
     scene: &'s Scene,
-    state: SceneState,
+    state: &'n mut SceneState,
     narrow: &'n mut NarrowPhase,
 }
 
@@ -156,7 +165,7 @@ impl BranchAndBound<'_, '_> {
             }
             self.set_centre(&joints, &cell);
             let moves: Vec<f64> = joints.iter().zip(cell.half_width).map(|(x, half)| x.motion_bound * half).collect();
-            let [x, y] = models.map(|model| PlacedModel::new(self.scene, &self.state, model));
+            let [x, y] = models.map(|model| PlacedModel::new(self.scene, self.state, model));
             let clear = |narrow: &mut NarrowPhase, limit: f64| {
                 narrow.separated_coarsely(&x, &y, limit).is_some() || !narrow.within(&x, &y, Level::L3, limit)
             };
@@ -218,6 +227,17 @@ impl BranchAndBound<'_, '_> {
             (cell.centre[i], cell.half_width[i]) = (0.0, std::f64::consts::PI * (1.0 + 1e-12));
         }
         Some(cell)
+    }
+
+    /// Moves the robots of a pair back to their joint values in another state.
+    fn reset(&mut self, start: &SceneState, pair: [GeometryId; 2]) {
+        for id in pair {
+            if let GeometryId::Link { robot, .. } = id {
+                self.state.chains[robot.0].q.copy_from_slice(&start.chains[robot.0].q);
+                self.scene.robots[robot.0].robot.chain.forward(&mut self.state.chains[robot.0]);
+                self.state.robot_moved(self.scene, robot);
+            }
+        }
     }
 
     /// Moves the robots to the centre of a cell.
