@@ -117,7 +117,8 @@ cargo xtask COMMAND
   planning --validity [--urdf R] [--srdf S] [--json]
         how long it takes to say that a state is free, among 10, 100 and 1000 obstacles: along edges, and one by one
   scaling [--out DIR]
-        time and memory of meshes of 1,000 to 2,000,000 triangles; --out writes the figures of docs/measurements/benchmarks.md
+        growth of times and memory with triangles, obstacles, robots, regions, rows and nodes, and the exponent of each; takes
+        some five minutes; --out writes the figures of docs/measurements/growth.md
 
 Exit status: 0 all well, 1 a check failed, 2 the call is wrong.
 ";
@@ -127,7 +128,7 @@ const PARSERS: [&str; 13] =
     ["urdf", "srdf", "scene", "yaml", "stl", "obj", "dae", "gltf", "ply", "off", "3ds", "wrl", "mesh"];
 
 /// Commands of `elbowroom-devtools` that measure or run long: they use a release build.
-const MEASURING: [&str; 7] = ["cross-validate", "contacts", "evade", "golden", "paths", "rpq", "scaling"];
+const MEASURING: [&str; 6] = ["cross-validate", "contacts", "evade", "golden", "paths", "rpq"];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();

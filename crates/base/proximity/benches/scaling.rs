@@ -1,9 +1,7 @@
-//! Cost of a mesh as a function of its number of triangles: time and memory to build it, time per query.
+//! Cost of a mesh as a function of its number of triangles: time and memory to build it, time and allocations per query.
 //!
-//! `cargo bench -p elbowroom-proximity --bench scaling -- [--json]` prints one row per size, from 1,000 to 2,000,000
-//! triangles, for two bumpy balls of 1 m, apart by 1 % and overlapping by 1 %.
-
-#![allow(clippy::print_stdout, reason = "a bench prints")]
+//! `cargo bench -p elbowroom-proximity --bench scaling` prints one row per size, from 1,000 to 10,000,000 triangles, for
+//! two bumpy balls of 1 m, apart by 1 % and overlapping by 1 %.
 
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
@@ -12,6 +10,27 @@ use std::time::Instant;
 use elbowroom_proximity::advanced::{colliding_triangles, mesh_separation, triangles_within};
 use elbowroom_proximity::{TriMesh, Workspace};
 use elbowroom_spatial::{Pose, Rotation, Vec3};
+use elbowroom_testkit::allocation::{AllocationCounter, COUNTING_ALLOCATOR, CountingAllocator};
+use elbowroom_testkit::bench::{GrowthTable, Stopwatch, quantile};
+
+#[global_allocator]
+static ALLOCATOR: CountingAllocator = COUNTING_ALLOCATOR;
+
+const SIZES: [usize; 9] = [1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000, 3_000_000, 10_000_000];
+/// Centres of balls apart by 1 %, and overlapping by 1 %, m.
+const NEAR_M: f64 = 1.06;
+const TOUCH_M: f64 = 0.97;
+
+/// Times and memory of one size, and allocations of its queries.
+struct Measured {
+    triangles: f64,
+    build_ms: f64,
+    tree_bytes: f64,
+    mesh_bytes: f64,
+    /// Collide near, collide touching, within, distance.
+    query_us: [f64; 4],
+    allocations: usize,
+}
 
 /// A closed wavy ball of about 2 · rings · sectors triangles.
 fn ball(triangles: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
@@ -61,51 +80,65 @@ fn time(apart: f64, mut query: impl FnMut(&Pose)) -> f64 {
             start.elapsed().as_secs_f64() * 1e6
         })
         .collect();
-    each.sort_by(f64::total_cmp);
-    each[each.len() / 2]
+    quantile(&mut each, 0.5)
+}
+
+/// Builds a mesh several times, and measures the least time (ms) and the memory that it holds in all (bytes).
+fn build(size: usize) -> (TriMesh, f64, f64) {
+    let (vertices, faces) = ball(size);
+    let mut least_ms = f64::INFINITY;
+    for _ in 0..if size < 200_000 { 5 } else { 2 } {
+        let (v, f) = (vertices.clone(), faces.clone());
+        let watch = Stopwatch::start();
+        black_box(TriMesh::new(v, f).expect("a closed ball"));
+        least_ms = least_ms.min(watch.seconds() * 1e3);
+    }
+    let given = std::mem::size_of_val(&vertices[..]) + std::mem::size_of_val(&faces[..]);
+    let counter = AllocationCounter::start();
+    let mesh = TriMesh::new(vertices, faces).expect("a closed ball");
+    let held = counter.held_bytes() as f64 + given as f64;
+    (mesh, least_ms, held)
+}
+
+fn measure(size: usize) -> Measured {
+    let (mesh, build_ms, held) = build(size);
+    let mut s = Workspace::new();
+    let here = Pose::IDENTITY;
+    let mut query = |apart: f64, kind: usize| {
+        time(apart, |p| match kind {
+            0 | 1 => _ = black_box(colliding_triangles(&mesh, &here, &mesh, p, &mut s)),
+            2 => _ = black_box(triangles_within(&mesh, &here, &mesh, p, 0.05, &mut s)),
+            _ => _ = black_box(mesh_separation(&mesh, &here, &mesh, p, &mut s)),
+        })
+    };
+    let mut all = || [query(NEAR_M, 0), query(TOUCH_M, 1), query(NEAR_M, 2), query(NEAR_M, 3)];
+    let query_us = all();
+    let counter = AllocationCounter::start();
+    all();
+    // `time` allocates the list of poses and the list of times.
+    let allocations = counter.allocations() - 4 * 2;
+    let triangles = mesh.triangles().len() as f64;
+    let tree_bytes = mesh.bvh_bytes() as f64 / triangles;
+    Measured { triangles, build_ms, tree_bytes, mesh_bytes: held / triangles, query_us, allocations }
 }
 
 fn main() {
-    let json = elbowroom_testkit::bench::arguments().any(|a| a == "--json");
-    if !json {
-        println!("triangles  build ms  tree B/tri  collide near µs  collide touch µs  within 5 % µs  distance µs");
-    }
-    for size in [1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000, 2_000_000] {
-        let (vertices, faces) = ball(size);
-        let builds: Vec<f64> = (0..if size < 200_000 { 5 } else { 3 })
-            .map(|_| {
-                let (v, f) = (vertices.clone(), faces.clone());
-                let start = Instant::now();
-                black_box(TriMesh::new(v, f).expect("a closed ball"));
-                start.elapsed().as_secs_f64() * 1e3
-            })
-            .collect();
-        let build = builds.iter().copied().fold(f64::INFINITY, f64::min);
-        let mesh = TriMesh::new(vertices, faces).expect("a closed ball");
-        let mut s = Workspace::new();
-        let here = Pose::IDENTITY;
-        let near = time(1.06, |p| {
-            black_box(colliding_triangles(&mesh, &here, &mesh, p, &mut s));
-        });
-        let touch = time(0.97, |p| {
-            black_box(colliding_triangles(&mesh, &here, &mesh, p, &mut s));
-        });
-        let tolerance = time(1.06, |p| {
-            black_box(triangles_within(&mesh, &here, &mesh, p, 0.05, &mut s));
-        });
-        let far = time(1.06, |p| {
-            black_box(mesh_separation(&mesh, &here, &mesh, p, &mut s));
-        });
-        let triangles = mesh.triangles().len();
-        let bytes = mesh.bvh_bytes() as f64 / triangles as f64;
-        if json {
-            println!(
-                "{{\"triangles\":{triangles},\"build_ms\":{build:.3},\"tree_bytes_per_triangle\":{bytes:.1},\"collide_near_us\":{near:.3},\"collide_touch_us\":{touch:.3},\"within_us\":{tolerance:.3},\"distance_us\":{far:.3}}}"
-            );
-        } else {
-            println!(
-                "{triangles:9}  {build:8.2}  {bytes:10.1}  {near:15.2}  {touch:16.2}  {tolerance:13.2}  {far:11.2}"
-            );
-        }
+    let columns = [
+        "triangles",
+        "build ms",
+        "collide near µs",
+        "collide touching µs",
+        "within 5 % µs",
+        "distance µs",
+        "tree B/triangle",
+        "mesh B/triangle",
+        "allocations of 800 queries",
+    ];
+    let table = GrowthTable::start("triangles", &columns);
+    for size in SIZES {
+        let m = measure(size);
+        let [near, touch, within, distance] = m.query_us;
+        let memory = [m.tree_bytes, m.mesh_bytes, m.allocations as f64];
+        table.row(&[&[m.triangles, m.build_ms, near, touch, within, distance][..], &memory].concat());
     }
 }

@@ -1,4 +1,4 @@
-//! Counter of a program's allocations, for tests.
+//! Counter of a program's allocations, for tests and benches.
 //!
 //! Such a test runs without the test harness (`harness = false`): the harness has threads that allocate, and the
 //! counter is for the whole process. The program installs the allocator:
@@ -13,8 +13,10 @@
 //!     let counter = AllocationCounter::start();
 //!     let sum = 2 + 2;
 //!     assert_eq!((sum, counter.allocations(), counter.changes()), (4, 0, 0));
-//!     drop(std::hint::black_box(vec![sum]));
-//!     assert_eq!((counter.allocations(), counter.changes()), (1, 2));
+//!     let list = std::hint::black_box(vec![sum]);
+//!     assert_eq!(counter.held_bytes(), 4);
+//!     drop(list);
+//!     assert_eq!((counter.allocations(), counter.changes(), counter.held_bytes()), (1, 2, 0));
 //! }
 //! ```
 
@@ -48,6 +50,12 @@ impl AllocationCounter {
     pub fn allocations(&self) -> usize {
         let change = self.0.change();
         change.allocations + change.reallocations
+    }
+
+    /// Bytes of the blocks that were allocated since the start and are still in use; negative if more was freed.
+    pub fn held_bytes(&self) -> i64 {
+        let change = self.0.change();
+        change.bytes_allocated.cast_signed() as i64 - change.bytes_deallocated.cast_signed() as i64
     }
 
     /// Number of [`Self::allocations`], and of blocks that were freed.
