@@ -4,7 +4,8 @@ use elbowroom_kinematics::JointLimits;
 use std::time::Duration;
 
 use elbowroom_planner::{
-    CoverModels, CoverObstacles, JointPath, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings, TimedPath,
+    AnytimePath, CoverModels, CoverObstacles, JointPath, RobotPlanner, RrtConnect, RrtConnectError, RrtConnectSettings,
+    TimedPath,
 };
 use elbowroom_query::problems::{PlanningEngine, ProblemScene, ProblemSettings, Unsolved};
 use elbowroom_robot::RobotId;
@@ -49,7 +50,7 @@ impl BoundedEngine {
 }
 
 impl PlanningEngine for BoundedEngine {
-    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<JointPath, Unsolved> {
+    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<AnytimePath, Unsolved> {
         let found = self.with_planner(problem, settings.clearance_m, |mut planner| {
             planner.plan_to_any(problem.start(), problem.goals(), &bounded(settings))
         });
@@ -60,7 +61,7 @@ impl PlanningEngine for BoundedEngine {
         self.digest.numbers(path.map_or([0.0; 2], |path| [path.raw_length_rad, path.length_rad]));
         self.digest.whole(waypoints.len());
         self.digest.numbers(waypoints.iter().flatten().copied());
-        Ok(found?)
+        Ok(found?.into())
     }
 
     fn time(

@@ -62,8 +62,8 @@ fn the_document_has_the_documented_keys_and_the_files_the_paths() {
     let document = answer.expect(0).json();
     assert_eq!(keys(&document), ["problems", "summary"]);
     let problems = document["problems"].as_array().unwrap();
-    let documented = "cost_rad cost_raw_rad duration_s found id line_deviation_m line_deviation_rad motion planning_us proven reason \
-                      set simplify_us valid";
+    let documented = "cost_rad cost_raw_rad duration_s found id improvements line_deviation_m line_deviation_rad motion \
+                      planning_us proven reason set simplify_us valid";
     for problem in problems {
         assert_eq!(keys(problem).join(" "), documented);
     }
@@ -73,6 +73,8 @@ fn the_document_has_the_documented_keys_and_the_files_the_paths() {
     assert_eq!(facts, [fact("post", "0001", true), fact("post", "0002", false), fact("../open", "a/b", true)]);
     assert!(problems[1]["reason"].as_str().unwrap().contains("`post` are in collision"));
     assert!(["planning_us", "cost_rad", "duration_s"].iter().all(|key| problems[1][key].is_null()));
+    assert_eq!(problems[0]["improvements"][0]["cost_rad"], problems[0]["cost_rad"]);
+    assert_eq!(problems[1]["improvements"], json!([]));
     let cost = |key: &str| problems[0][key].as_f64().unwrap();
     assert!(cost("cost_rad") > 1.6 && cost("cost_rad") <= cost("cost_raw_rad"));
     assert!((problems[2]["cost_rad"].as_f64().unwrap() - 1.6).abs() < 1e-12);
@@ -95,6 +97,18 @@ fn the_document_has_the_documented_keys_and_the_files_the_paths() {
     // The result is deterministic.
     let (_, again) = plan(&sets(), &["--json"]);
     assert_eq!(again.json()["problems"][0]["cost_rad"], problems[0]["cost_rad"]);
+}
+
+#[test]
+fn shorter_paths_and_their_times_are_in_the_document() {
+    let (_, answer) = plan(&sets(), &["--json", "--optimize", "--time-limit", "0.1"]);
+    let problem = &answer.expect(0).json()["problems"][0];
+    let values = |key: &str| -> Vec<f64> {
+        problem["improvements"].as_array().unwrap().iter().map(|entry| entry[key].as_f64().unwrap()).collect()
+    };
+    let (times, costs) = (values("time_us"), values("cost_rad"));
+    assert_eq!(costs.last().copied(), problem["cost_rad"].as_f64());
+    assert!(costs.is_sorted_by(|a, b| a > b) && times.is_sorted() && times[0] > 0.0, "{times:?} {costs:?}");
 }
 
 #[test]

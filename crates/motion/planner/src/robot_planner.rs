@@ -5,7 +5,7 @@ use elbowroom_robot::RobotId;
 use elbowroom_scene::{Scene, SceneState};
 use elbowroom_validity::CoverSource;
 
-use crate::cover_rrt_connect::{CoverModel, CoverObstacles, CoverRrtConnect, LinearMove};
+use crate::cover_rrt_connect::{AnytimePath, CoverModel, CoverObstacles, CoverRrtConnect, LinearMove};
 use crate::joint_path::JointPath;
 use crate::rrt_connect::{RrtConnect, RrtConnectError, RrtConnectSettings};
 use crate::timed_path::TimedPath;
@@ -81,10 +81,10 @@ impl<'m> RobotPlanner<'m> {
         start: &SceneState,
         goals: &[G],
         settings: &RrtConnectSettings,
-    ) -> Result<JointPath, RrtConnectError> {
+    ) -> Result<AnytimePath, RrtConnectError> {
         match self {
-            Self::Covers(planner) => Ok(planner.plan_anytime(start, goals, settings)?.path),
-            Self::Exact(planner) => planner.plan_to_any(start, goals, settings),
+            Self::Covers(planner) => planner.plan_anytime(start, goals, settings),
+            Self::Exact(planner) => planner.plan_to_any(start, goals, settings).map(AnytimePath::from),
         }
     }
 

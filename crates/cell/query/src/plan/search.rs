@@ -22,7 +22,7 @@ impl Search<'_> {
         let path = if let Some(line) = &self.line {
             planner.plan_linear(self.state, line, self.settings)?
         } else if self.optimize {
-            planner.plan_anytime(self.state, self.goals, self.settings)?
+            planner.plan_anytime(self.state, self.goals, self.settings)?.path
         } else {
             planner.plan_to_any(self.state, self.goals, self.settings)?
         };

@@ -1,7 +1,9 @@
 //! RRT-Connect on sphere covers as the planner of problem sets, followed by RRT-Connect in the exact scene.
 
 use elbowroom_kinematics::{JointLimits, LinkId};
-use elbowroom_planner::{CoverModels, CoverObstacles, JointPath, RobotPlanner, RrtConnectError, TimedPath};
+use elbowroom_planner::{
+    AnytimePath, CoverModels, CoverObstacles, JointPath, RobotPlanner, RrtConnectError, TimedPath,
+};
 
 use super::problem_scene::ROBOT;
 use super::{PlanningEngine, ProblemScene, ProblemSettings, Unsolved, linear_move, rrt_connect};
@@ -33,7 +35,7 @@ impl CoverRrtConnectEngine {
 
 impl PlanningEngine for CoverRrtConnectEngine {
     /// Plans to the goal that is found first.
-    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<JointPath, Unsolved> {
+    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<AnytimePath, Unsolved> {
         self.with_planner(problem, settings, |planner| rrt_connect::solve(planner, problem, settings))?
     }
 

@@ -3,17 +3,18 @@
 use elbowroom_kinematics::{JointLimits, LinkId};
 use std::time::Duration;
 
-use elbowroom_planner::{JointPath, RrtConnectError, TimedPath};
+use elbowroom_planner::{AnytimePath, JointPath, RrtConnectError, TimedPath};
 
 use super::ProblemScene;
 
 /// A planner that solves problems one after the other. It may reuse what it computes for the robot.
 pub trait PlanningEngine {
-    /// Plans from the start to one of the goals, all of which are free. Every stretch of the path is proven free.
+    /// Plans from the start to one of the goals, all of which are free. Every stretch of the path is proven free. With
+    /// [`optimize`](ProblemSettings::optimize) the path is shortened until the time limit.
     ///
     /// # Errors
     /// No path was found.
-    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<JointPath, Unsolved>;
+    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<AnytimePath, Unsolved>;
 
     /// Moves a link straight from its pose at the start to its pose at one of the goals, in one posture, proven free. By
     /// default no line is found.

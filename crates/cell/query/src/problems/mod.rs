@@ -53,7 +53,7 @@ pub use cover_rrt_connect::CoverRrtConnectEngine;
 pub use engine::{PlanningEngine, ProblemSettings, Unsolved};
 pub use model::ProblemModel;
 pub use problem_scene::ProblemScene;
-pub use result::ProblemResult;
+pub use result::{Improvement, ProblemResult};
 pub use rrt_connect::RrtConnectEngine;
 pub use run::run;
 pub use summary::{ProblemSummary, SetSummary, Statistics};

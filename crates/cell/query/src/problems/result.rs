@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use elbowroom_planner::JointPath;
+use elbowroom_planner::AnytimePath;
 use serde::Serialize;
 
 use super::Unsolved;
@@ -33,12 +33,29 @@ pub struct ProblemResult {
     pub cost_raw_rad: Option<f64>,
     /// Length in joint space, rad (and m).
     pub cost_rad: Option<f64>,
+    /// Each path that was the shortest so far: one, or several with [`optimize`](super::ProblemSettings::optimize).
+    pub improvements: Vec<Improvement>,
     /// Duration of the timed path, s.
     pub duration_s: Option<f64>,
     /// Largest distance of the link that a linear motion moves from its line, m.
     pub line_deviation_m: Option<f64>,
     /// Largest rotation of that link from the orientation on the line, rad.
     pub line_deviation_rad: Option<f64>,
+}
+
+/// A path that was the shortest so far.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Improvement {
+    /// Time from the beginning of the search until the path was found and shortened, µs.
+    pub time_us: f64,
+    /// Length in joint space, rad (and m).
+    pub cost_rad: f64,
+}
+
+impl Improvement {
+    fn of(&(time, cost_rad): &(Duration, f64)) -> Self {
+        Self { time_us: micros(time), cost_rad }
+    }
 }
 
 impl ProblemResult {
@@ -59,22 +76,24 @@ impl ProblemResult {
             simplify_us: None,
             cost_raw_rad: None,
             cost_rad: None,
+            improvements: Vec::new(),
             duration_s: None,
             line_deviation_m: None,
             line_deviation_rad: None,
         }
     }
 
-    pub(super) fn of(key: [&str; 2], motion: Motion, solution: &Result<JointPath, Unsolved>) -> Self {
+    pub(super) fn of(key: [&str; 2], motion: Motion, solution: &Result<AnytimePath, Unsolved>) -> Self {
         let of_valid = Self { valid: true, reason: None, ..Self::invalid(key, motion, String::new()) };
         match solution {
-            Ok(path) => Self {
+            Ok(AnytimePath { path, improvements, .. }) => Self {
                 found: true,
                 proven: true,
                 planning_us: Some(micros(path.planning_time)),
                 simplify_us: Some(micros(path.simplification_time)),
                 cost_raw_rad: Some(path.raw_length_rad),
                 cost_rad: Some(path.length_rad),
+                improvements: improvements.iter().map(Improvement::of).collect(),
                 ..of_valid
             },
             Err(Unsolved { reason, planning }) => {

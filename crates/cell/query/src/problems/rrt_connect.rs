@@ -3,7 +3,7 @@
 use elbowroom_kinematics::JointLimits;
 use std::time::{Duration, Instant};
 
-use elbowroom_planner::{JointPath, RobotPlanner, RrtConnectError, RrtConnectSettings, TimedPath};
+use elbowroom_planner::{AnytimePath, JointPath, RobotPlanner, RrtConnectError, RrtConnectSettings, TimedPath};
 
 use super::{PlanningEngine, ProblemScene, ProblemSettings, Unsolved};
 
@@ -12,7 +12,7 @@ use super::{PlanningEngine, ProblemScene, ProblemSettings, Unsolved};
 pub struct RrtConnectEngine;
 
 impl PlanningEngine for RrtConnectEngine {
-    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<JointPath, Unsolved> {
+    fn solve(&mut self, problem: &ProblemScene, settings: &ProblemSettings) -> Result<AnytimePath, Unsolved> {
         solve(RobotPlanner::Exact(problem.planner().map_err(RrtConnectError::from)?), problem, settings)
     }
 
@@ -43,13 +43,13 @@ pub(super) fn solve(
     mut planner: RobotPlanner,
     problem: &ProblemScene,
     settings: &ProblemSettings,
-) -> Result<JointPath, Unsolved> {
+) -> Result<AnytimePath, Unsolved> {
     let begin = Instant::now();
     let (start, goals, limits) = (problem.start(), problem.goals(), rrt_settings(settings, settings.time_limit));
     let answer = if settings.optimize {
         planner.plan_anytime(start, goals, &limits)
     } else {
-        planner.plan_to_any(start, goals, &limits)
+        planner.plan_to_any(start, goals, &limits).map(AnytimePath::from)
     };
     answer.map_err(|e| Unsolved { reason: reason(&e), planning: begin.elapsed() })
 }

@@ -1,7 +1,7 @@
 //! The run over the problems of a file.
 
 use elbowroom_formats::problem_set::PlanningProblem;
-use elbowroom_planner::{JointPath, TimedPath};
+use elbowroom_planner::{AnytimePath, JointPath, TimedPath};
 
 use super::messages::Result;
 use super::model::ProblemModel;
@@ -33,10 +33,10 @@ pub fn run(
         } else {
             let solution = solve(engine, &scene, settings);
             let mut result = ProblemResult::of([set, id], scene.motion, &solution);
-            if let Ok(path) = &solution {
-                measure_line(&scene, quarters(&path.waypoints).iter().map(Vec::as_slice), &mut result);
+            if let Ok(answer) = &solution {
+                measure_line(&scene, quarters(&answer.path.waypoints).iter().map(Vec::as_slice), &mut result);
             }
-            let timed = solution.ok().and_then(|path| timed(engine, &scene, path, settings, &mut result));
+            let timed = solution.ok().and_then(|answer| timed(engine, &scene, answer.path, settings, &mut result));
             if let Some(timed) = &timed {
                 measure_line(&scene, timed.trajectory.rows().iter().map(|row| &row.q[..]), &mut result);
             }
@@ -55,11 +55,11 @@ fn solve(
     engine: &mut dyn PlanningEngine,
     problem: &ProblemScene,
     settings: &ProblemSettings,
-) -> std::result::Result<JointPath, Unsolved> {
+) -> std::result::Result<AnytimePath, Unsolved> {
     match problem.motion {
         Motion::Any => engine.solve(problem, settings),
-        Motion::PointToPoint => joint_move::plan(problem, settings),
-        Motion::Linear(link) => engine.solve_linear(problem, link, settings),
+        Motion::PointToPoint => joint_move::plan(problem, settings).map(AnytimePath::from),
+        Motion::Linear(link) => engine.solve_linear(problem, link, settings).map(AnytimePath::from),
     }
 }
 

@@ -27,6 +27,14 @@ pub struct AnytimePath {
     pub is_shortest: bool,
 }
 
+impl From<JointPath> for AnytimePath {
+    /// Returns a path that was not shortened any more.
+    fn from(path: JointPath) -> Self {
+        let improvements = vec![(path.planning_time + path.simplification_time, path.length_rad)];
+        Self { path, improvements, is_shortest: false }
+    }
+}
+
 impl CoverRrtConnect<'_> {
     /// Like [`plan_to_any`](Self::plan_to_any), then searches for shorter paths, each proven free, until the time limit
     /// or the limit of configurations is reached (AORRTC).
