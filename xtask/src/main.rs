@@ -116,6 +116,9 @@ cargo xtask COMMAND
         ELBOWROOM: a built program to use instead of building one
   planning --validity [--urdf R] [--srdf S] [--json]
         how long it takes to say that a state is free, among 10, 100 and 1000 obstacles: along edges, and one by one
+  planning --anytime [--problems FILE] [--urdf R] [--srdf S] [--json]
+        the length of the best path after 1, 10 and 100 ms: `plan --optimize` beside VAMP's AORRTC and FCIT*
+        (SEEDS: default 2)
   scaling [--out DIR]
         growth of times and memory with triangles, obstacles, robots, regions, rows and nodes, and the exponent of each; takes
         some five minutes; --out writes the figures of docs/measurements/growth.md

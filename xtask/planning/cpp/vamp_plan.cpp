@@ -1,69 +1,21 @@
 // VAMP's RRT-Connect and simplification on a file of problems, as its own scripts/evaluate_mbm.py runs them.
 //
 // usage: vamp_plan PROBLEMS ITERATIONS SKIP…
-// A problem is `problem SET ID`, `start q…`, `goal q…`, solids (`sphere`, `capsule`, `cuboid` and numbers), `end`.
 // Each SKIP is a pass over all problems whose Halton sequence starts that many states later.
 // Printed: an attempt per line, as xtask/planning/README.md has it. Times are VAMP's own.
 #include <chrono>
 #include <iostream>
 
-#include "vamp_scene.hpp"
+#include "vamp_problems.hpp"
 
 #include <vamp/planning/rrtc.hh>
 #include <vamp/planning/simplify.hh>
-#include <vamp/random/halton.hh>
 
 using RRTC = vamp::planning::RRTC<Robot, rake, Robot::resolution>;
-using Path = vamp::planning::Path<Robot>;
 using Clock = std::chrono::steady_clock;
 
-struct Problem {
-  std::string set, id;
-  Robot::Configuration start, goal;
-  Scene scene;
-};
-
-static std::vector<Problem> read(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error("cannot read " + file);
-  std::vector<Problem> problems;
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    std::string kind;
-    words >> kind;
-    if (kind == "problem") {
-      auto& problem = problems.emplace_back();
-      words >> problem.set >> problem.id;
-    } else if (kind == "start") {
-      problems.back().start = configuration(numbers(words));
-    } else if (kind == "goal") {
-      problems.back().goal = configuration(numbers(words));
-    } else if (kind == "end") {
-      problems.back().scene.sort();
-    } else {
-      add(problems.back().scene, kind, numbers(words));
-    }
-  }
-  return problems;
-}
-
-static bool free_at(const Robot::Configuration& q, const WideScene& scene) {
-  return vamp::planning::validate_motion<Robot, rake, 1>(q, q, scene);
-}
-
-static double length(const Path& path) { return path.size() < 2 ? 0 : path.cost(); }
-
-static void print(const Path& path) {
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const auto q = path[i].to_array();
-    std::printf("%s[", i == 0 ? "" : ",");
-    for (std::size_t k = 0; k < Robot::dimension; ++k) std::printf("%s%.9g", k == 0 ? "" : ",", double(q[k]));
-    std::printf("]");
-  }
-}
-
 static void attempt(const Problem& problem, std::size_t skip, std::size_t iterations) {
-  const bool valid = free_at(problem.start, WideScene(problem.scene)) && free_at(problem.goal, WideScene(problem.scene));
+  const bool valid = is_valid(problem);
   vamp::planning::RRTCSettings settings;
   settings.range = 1.0;
   settings.max_iterations = settings.max_samples = iterations;

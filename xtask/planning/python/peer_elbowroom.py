@@ -11,9 +11,10 @@ import attempts
 import job
 
 
-def answers(task, paths):
+def answers(task, paths, more=()):
     words = [task.program, "plan", "--urdf", task.urdf, "--problems", task.file, "--json", "--paths", paths]
     words += ["--seed", str(task.seed)] + (["--srdf", task.srdf] if task.srdf else [])
+    words += more
     try:
         done = subprocess.run(words, capture_output=True, text=True)
     except OSError as reason:

@@ -37,7 +37,7 @@ PEERS = [
 ]
 
 
-def options():
+def options(seeds=5):
     words = argparse.ArgumentParser()
     words.add_argument("--problems", required=True)
     words.add_argument("--urdf", required=True)
@@ -45,7 +45,7 @@ def options():
     words.add_argument("--folder", required=True)
     words.add_argument("--hits", required=True, help="the program compiled from cpp/hits.cpp")
     words.add_argument("--json", action="store_true")
-    words.add_argument("--seeds", type=int, default=int(os.environ.get("SEEDS", "5")))
+    words.add_argument("--seeds", type=int, default=int(os.environ.get("SEEDS", str(seeds))))
     words.add_argument("libs", nargs="*", metavar="LIB=PROGRAM")
     return words.parse_args()
 
@@ -54,7 +54,7 @@ def attempts_of(peer, program, seed, call):
     out = os.path.join(call.folder, f"{peer.lib}_{peer.mode}_{seed}.jsonl")
     words = [sys.executable, "-B", os.path.join(HERE, peer.script), "--problems", call.problems, "--urdf", call.urdf]
     words += ["--srdf", call.srdf, "--folder", call.folder, "--out", out, "--seed", str(seed)]
-    words += ["--program", program, "--per-set", str(peer.per_set)]
+    words += ["--lib", peer.lib, "--program", program, "--per-set", str(peer.per_set)]
     done = subprocess.run(words, stderr=subprocess.PIPE, text=True, stdout=sys.stderr)
     if done.returncode != 0:
         raise RuntimeError(attempts.last_words(done.stderr))

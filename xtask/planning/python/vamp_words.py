@@ -1,6 +1,19 @@
 """A problem as the lines that `vamp_plan` reads, with VAMP's own substitutes for cylinders."""
 
 import math
+import os
+import sys
+
+
+def write(task):
+    """Writes the problems to a file of the job's folder; returns its name."""
+    if any(name != f"panda_joint{k}" for p in task.problems for k, name in enumerate(p.joints(), 1)):
+        sys.exit("VAMP has compiled code for a few robots; the Panda is the one used here")
+    scenes = os.path.join(task.folder, "vamp_problems.txt")
+    with open(scenes, "w") as out:
+        for problem in task.problems:
+            out.write("\n".join(lines(problem)) + "\n")
+    return scenes
 
 
 def lines(problem):

@@ -24,8 +24,13 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
     let folder = root.join("target/planning");
     shell::make_folder(&folder)?;
     let python = install::python(&folder)?;
-    let peers = if options.validity { states(root, &folder, &python) } else { planners(root, &folder, &python) };
-    let script = if options.validity { "validity.py" } else { "planning.py" };
+    let (script, peers) = if options.validity {
+        ("validity.py", states(root, &folder, &python))
+    } else if options.anytime {
+        ("anytime.py", anytime_planners(root, &folder, &python))
+    } else {
+        ("planning.py", planners(root, &folder, &python))
+    };
     let mut words = on_one_core();
     // -B: no compiled Python beside the sources.
     words.extend([python.display().to_string(), "-B".into()]);
@@ -48,21 +53,29 @@ pub fn run(root: &Path, options: &Options) -> Result<(), String> {
 
 type Peer = (&'static str, Result<String, String>);
 
-/// Returns every planner with the file it needs, or the reason why it cannot run.
-fn planners(root: &Path, folder: &Path, python: &Path) -> Vec<Peer> {
+/// Makes the file that a planner needs, or says why it cannot run.
+type Get<'a> = &'a dyn Fn() -> Result<String, String>;
+
+/// Returns every planner that the variable `ONLY` names, with its file.
+fn chosen(every: &[(&'static str, Get)]) -> Vec<Peer> {
     let only = std::env::var("ONLY").unwrap_or_default();
-    let mut peers: Vec<Peer> = Vec::new();
-    let mut add = |name: &'static str, get: &dyn Fn() -> Result<String, String>| {
-        if name.contains(&only) {
-            peers.push((name, get()));
-        }
-    };
-    add("elbowroom", &|| elbowroom::program(root));
-    add("vamp", &|| vamp::program(root, folder, python, "vamp_plan"));
-    add("plainmp", &|| install::plainmp(folder).map(|()| String::new()));
-    add("plainmp+vamp_spheres", &|| install::plainmp(folder).and_then(|()| vamp::spheres(folder, python)));
-    add("ompl", &|| Ok(String::new()));
-    peers
+    every.iter().filter(|(name, _)| name.contains(&only)).map(|(name, get)| (*name, get())).collect()
+}
+
+fn planners(root: &Path, folder: &Path, python: &Path) -> Vec<Peer> {
+    chosen(&[
+        ("elbowroom", &|| elbowroom::program(root)),
+        ("vamp", &|| vamp::program(root, folder, python, "vamp_plan")),
+        ("plainmp", &|| install::plainmp(folder).map(|()| String::new())),
+        ("plainmp+vamp_spheres", &|| install::plainmp(folder).and_then(|()| vamp::spheres(folder, python))),
+        ("ompl", &|| Ok(String::new())),
+    ])
+}
+
+/// Returns the planners that shorten their paths.
+fn anytime_planners(root: &Path, folder: &Path, python: &Path) -> Vec<Peer> {
+    let vamp = || vamp::program(root, folder, python, "vamp_anytime");
+    chosen(&[("elbowroom", &|| elbowroom::program(root)), ("vamp_aorrtc", &vamp), ("vamp_fcit", &vamp)])
 }
 
 /// Returns the peers that can check single states.

@@ -9,6 +9,7 @@ pub struct Options {
     pub urdf: Option<PathBuf>,
     pub srdf: Option<PathBuf>,
     pub validity: bool,
+    pub anytime: bool,
     pub json: bool,
 }
 
@@ -27,15 +28,23 @@ impl Options {
                     options.validity = true;
                     continue;
                 }
+                "--anytime" => {
+                    options.anytime = true;
+                    continue;
+                }
                 "--problems" => &mut options.problems,
                 "--urdf" => &mut options.urdf,
                 "--srdf" => &mut options.srdf,
                 _ => {
-                    let known = "`--problems FILE`, `--urdf FILE`, `--srdf FILE`, `--validity` and `--json`";
+                    let known =
+                        "`--problems FILE`, `--urdf FILE`, `--srdf FILE`, `--validity`, `--anytime` and `--json`";
                     return Err(format!("`planning {word}`: the options are {known}"));
                 }
             };
             *file = Some(words.next().ok_or_else(|| format!("`{word}` needs a file: `{word} FILE`"))?.into());
+        }
+        if options.validity && options.anytime {
+            return Err("`--validity` and `--anytime` are two measurements: give one of them".into());
         }
         Ok(options)
     }
@@ -51,6 +60,8 @@ mod tests {
         let expected = Options { problems, json: true, ..Options::default() };
         assert_eq!(Options::parse(&["--json", "--problems", "p.json"]).unwrap(), expected);
         assert!(Options::parse(&["--validity"]).unwrap().validity);
+        assert_eq!(Options::parse(&["--anytime"]).unwrap(), Options { anytime: true, ..Options::default() });
+        assert!(Options::parse(&["--anytime", "--validity"]).unwrap_err().contains("one of them"));
         assert!(Options::parse(&["--urdf"]).unwrap_err().contains("--urdf FILE"));
         assert!(Options::parse(&["--udf"]).unwrap_err().contains("`planning --udf`"));
     }

@@ -36,14 +36,15 @@ pub fn program(root: &Path, folder: &Path, python: &Path, name: &str) -> Result<
         native::apt(folder, &DEBIAN)?;
     }
     let ours = root.join("xtask/planning/cpp");
-    let headers = ["vamp_scene.hpp", "nigh/nigh_forward.hpp", "nigh/lp_space.hpp", "nigh/kdtree_batch.hpp"];
+    let nigh = ["nigh/nigh_forward.hpp", "nigh/lp_space.hpp", "nigh/kdtree_batch.hpp"];
+    let headers = ["vamp_scene.hpp", "vamp_problems.hpp"].into_iter().chain(nigh);
     let folders = [vamp.join("src/impl"), "/usr/include/eigen3".into(), ours.clone()];
     let includes = folders.iter().map(|folder| format!("-I{}", folder.display()));
     let parts = compile::Program {
         compiler: "clang++",
         name,
         source: ours.join(format!("{name}.cpp")),
-        included: headers.iter().map(|header| ours.join(header)).collect(),
+        included: headers.map(|header| ours.join(header)).collect(),
         flags: FLAGS.iter().map(|&flag| flag.to_owned()).chain(includes).collect(),
         links: Vec::new(),
     };
