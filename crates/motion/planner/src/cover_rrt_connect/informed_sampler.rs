@@ -12,12 +12,15 @@ pub(super) struct InformedSampler<'r> {
     start: Vec<f64>,
     goals: Vec<Vec<f64>>,
     region: SamplingRegion,
+    /// Joints that are not held. In an ellipsoid of all joints, hardly any configuration leaves the held ones in place.
+    moving: Vec<usize>,
     random: &'r mut Random,
 }
 
 impl<'r> InformedSampler<'r> {
     pub fn new(start: Vec<f64>, goals: Vec<Vec<f64>>, region: SamplingRegion, random: &'r mut Random) -> Self {
-        Self { start, goals, region, random }
+        let moving = region.moving();
+        Self { start, goals, region, moving, random }
     }
 
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
@@ -31,8 +34,12 @@ impl<'r> InformedSampler<'r> {
             return false;
         }
         let goal = open[((self.random.unit() * open.len() as f64) as usize).min(open.len() - 1)];
+        let [from, to] = [&self.start, goal].map(|q| -> Vec<f64> { self.moving.iter().map(|&i| q[i]).collect() });
+        let mut values = from.clone();
+        out.copy_from_slice(&self.start);
         for _ in 0..TRIALS {
-            in_ellipsoid(&self.start, goal, bound, self.random, out);
+            in_ellipsoid(&from, &to, bound, self.random, &mut values);
+            self.moving.iter().zip(&values).for_each(|(&i, &value)| out[i] = value);
             if self.region.contains(out) {
                 return true;
             }
@@ -93,7 +100,25 @@ fn in_unit_ball(random: &mut Random, out: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
+    use elbowroom_robot::example;
+
     use super::*;
+    use crate::rrt_connect::JointBounds;
+
+    #[test]
+    fn samples_are_in_the_ellipsoid_if_a_joint_is_held() {
+        let mut bounds = JointBounds::new(&example::arm().unwrap().chain);
+        let free = (f64::NEG_INFINITY, f64::INFINITY);
+        bounds.narrow([free, (0.3, 0.3), free].into_iter());
+        let ends = [vec![-0.4, 0.3, 0.1], vec![0.5, 0.3, -0.2]];
+        let (mut random, mut q, bound) = (Random::new(2), vec![0.0; 3], 1.05);
+        let region = bounds.sampling_region_of(ends.iter().map(Vec::as_slice));
+        let mut sampler = InformedSampler::new(ends[0].clone(), vec![ends[1].clone()], region, &mut random);
+        for _ in 0..1000 {
+            assert!(sampler.sample(bound, &mut q));
+            assert!(q[1] == 0.3 && length(&ends[0], &q) + length(&q, &ends[1]) <= bound, "{q:?}");
+        }
+    }
 
     #[test]
     fn samples_fill_the_ellipsoid_evenly_and_never_leave_it() {

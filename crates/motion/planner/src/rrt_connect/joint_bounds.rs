@@ -178,6 +178,11 @@ impl SamplingRegion {
         }
     }
 
+    /// Indices of the values that are not held at one value.
+    pub fn moving(&self) -> Vec<usize> {
+        (0..self.each.len()).filter(|&i| self.each[i][0] < self.each[i][3]).collect()
+    }
+
     /// Whether a configuration is in the region.
     pub fn contains(&self, q: &[f64]) -> bool {
         q.iter().zip(&self.each).all(|(value, [least, _, _, most])| value >= least && value <= most)
