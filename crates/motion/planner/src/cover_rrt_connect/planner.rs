@@ -1,6 +1,6 @@
 //! RRT-Connect planner on sphere covers.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use elbowroom_scene::SceneState;
 
@@ -21,6 +21,10 @@ use crate::rrt_connect::{
 const COVER_SHARE: f64 = 0.5;
 /// Fraction of its time after which a search on covers is interrupted to try to prove that no path exists.
 const FIRST_SHARE: f64 = 0.02;
+/// Time before which a search is not interrupted, because most paths are found within it.
+const FIRST_TIME: Duration = Duration::from_millis(20);
+/// Fraction of its time after which a search with a short time limit is interrupted even before that.
+const LARGEST_FIRST_SHARE: f64 = 0.4;
 /// Fraction of its time that such proofs may take: usually a path exists.
 const PROOF_SHARE: f64 = 0.3;
 /// Fraction of the proofs' time for values of one joint that no path crosses.
@@ -152,7 +156,7 @@ impl<'m> CoverRrtConnect<'m> {
         let region = self.exact.validator.bounds.sampling_region_of(ends.all());
         let mut sampler = RegionSampler::new(region, random);
         let last_deadline = self.exact.validator.deadline.clone();
-        self.covers.extend_deadline(last_deadline.no_later_than(begin + settings.time_limit.mul_f64(FIRST_SHARE)));
+        self.covers.extend_deadline(last_deadline.no_later_than(begin + time_before_proof(settings.time_limit)));
         let mut search = self.validator();
         let mut trees = TreeSearch::new(&mut search, ends.from(), ends.goals());
         let mut found = trees.run(&mut sampler);
@@ -165,6 +169,11 @@ impl<'m> CoverRrtConnect<'m> {
         let nodes = trees.nodes();
         found.ok_or_else(|| self.covers.not_found(begin.elapsed(), nodes))
     }
+}
+
+/// Time of a search on covers until it tries to prove that no path exists.
+fn time_before_proof(limit: Duration) -> Duration {
+    limit.mul_f64(FIRST_SHARE).max(FIRST_TIME.min(limit.mul_f64(LARGEST_FIRST_SHARE)))
 }
 
 impl ConstrainedValidator<'_, '_> {
@@ -205,4 +214,16 @@ fn projections(dof: usize) -> Vec<Projection> {
         (0..(dof + 1).saturating_sub(count)).map(move |j| Projection { joints: (j..j + count).collect(), step })
     };
     [(1, 0.01), (2, 0.04), (3, 0.1)].into_iter().flat_map(|(count, step)| neighbours(count, step)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_time_limit_is_not_spent_on_proofs() {
+        let ms = Duration::from_millis;
+        let times = [10, 50, 2500].map(|limit| time_before_proof(ms(limit)));
+        assert_eq!(times, [ms(4), ms(20), ms(50)]);
+    }
 }
