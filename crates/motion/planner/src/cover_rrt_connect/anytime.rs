@@ -6,6 +6,7 @@ use elbowroom_scene::SceneState;
 
 use super::cost_bounded_search::CostBoundedSearch;
 use super::informed_sampler::InformedSampler;
+use super::path_refinement::PathRefinement;
 use super::planner::CoverRrtConnect;
 use super::query_ends::QueryEnds;
 use crate::interpolation::{length, path_length};
@@ -25,6 +26,16 @@ pub struct AnytimePath {
     pub improvements: Vec<(Duration, f64)>,
     /// Whether no path can be shorter by more than 0.1 %, because the path is about as long as the straight segment.
     pub is_shortest: bool,
+}
+
+impl AnytimePath {
+    /// Takes another path if it is shorter: the segments to the ends may make it longer.
+    fn improve(&mut self, other: JointPath, planning_time: Duration) {
+        if other.length_rad < self.path.length_rad {
+            self.improvements.push((planning_time, other.length_rad));
+            self.path = JointPath { planning_time, ..other };
+        }
+    }
 }
 
 impl From<JointPath> for AnytimePath {
@@ -49,27 +60,20 @@ impl CoverRrtConnect<'_> {
     ) -> Result<AnytimePath, RrtConnectError> {
         let begin = Instant::now();
         let path = self.plan_to_any(start, goals, settings)?;
-        let mut improvements = vec![(begin.elapsed(), path.length_rad)];
+        let improvements = vec![(begin.elapsed(), path.length_rad)];
+        let mut answer = AnytimePath { path, improvements, is_shortest: false };
         let left = RrtConnectSettings { time_limit: settings.time_limit.saturating_sub(begin.elapsed()), ..*settings };
         let mut random = Random::new(settings.seed);
         // An end may be free in the exact scene although the covers cannot leave it.
-        let Ok(ends) = self.validator().query_ends(start, goals, &left, &mut random) else {
-            return Ok(AnytimePath { path, improvements, is_shortest: false });
-        };
-        let (mut best, mut is_shortest) = (path, false);
-        while !is_shortest && !self.covers.is_exhausted() {
-            let Some(other) = self.shorter(&ends, &best, &mut random) else { break };
-            // The segments to the ends may make the path longer.
-            if other.length_rad >= best.length_rad {
-                continue;
-            }
-            let planning_time = begin.elapsed();
-            best = JointPath { planning_time, ..other };
-            improvements.push((planning_time, best.length_rad));
-            is_shortest = Self::is_straight(&ends, &best);
+        let Ok(ends) = self.validator().query_ends(start, goals, &left, &mut random) else { return Ok(answer) };
+        let refined = self.refined(answer.path.clone(), &ends, &mut random);
+        answer.improve(refined, begin.elapsed());
+        while !Self::is_straight(&ends, &answer.path) && !self.covers.is_exhausted() {
+            let Some(other) = self.shorter(&ends, &answer.path, &mut random) else { break };
+            answer.improve(other, begin.elapsed());
         }
-        is_shortest |= Self::is_straight(&ends, &best);
-        Ok(AnytimePath { path: best, improvements, is_shortest })
+        answer.is_shortest = Self::is_straight(&ends, &answer.path);
+        Ok(answer)
     }
 
     /// Whether a path is hardly longer than the segment to the nearest goal.
@@ -96,7 +100,16 @@ impl CoverRrtConnect<'_> {
             simplification_time: Duration::ZERO,
             states_checked: self.covers.states_checked(),
         };
-        Some(ends.completed(path))
+        Some(self.refined(ends.completed(path), ends, random))
+    }
+
+    /// Makes a path shorter by random local changes.
+    fn refined(&mut self, mut path: JointPath, ends: &QueryEnds, random: &mut Random) -> JointPath {
+        let region = self.exact.validator.bounds.sampling_region_of(ends.all());
+        let mut search = self.validator();
+        PathRefinement { validator: &mut search, region: &region, random }.run(&mut path.waypoints);
+        path.length_rad = path_length(&path.waypoints);
+        path
     }
 }
 

@@ -10,6 +10,7 @@ mod disconnection_proof;
 mod informed_sampler;
 mod inner_balls;
 mod linear_move;
+mod path_refinement;
 mod planner;
 mod query_ends;
 mod separating_value;

@@ -183,6 +183,13 @@ impl SamplingRegion {
         (0..self.each.len()).filter(|&i| self.each[i][0] < self.each[i][3]).collect()
     }
 
+    /// Moves a configuration into the region.
+    pub fn clamp(&self, q: &mut [f64]) {
+        for (value, [least, _, _, most]) in q.iter_mut().zip(&self.each) {
+            *value = value.clamp(*least, *most);
+        }
+    }
+
     /// Whether a configuration is in the region.
     pub fn contains(&self, q: &[f64]) -> bool {
         q.iter().zip(&self.each).all(|(value, [least, _, _, most])| value >= least && value <= most)
