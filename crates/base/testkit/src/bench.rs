@@ -134,9 +134,13 @@ mod tests {
 
     #[test]
     fn a_stopwatch_does_not_count_sleep() {
-        let watch = Stopwatch::start();
-        std::thread::sleep(std::time::Duration::from_millis(300));
-        assert!(!cfg!(unix) || watch.seconds() < 0.25);
+        // Other tests in this process may use the processor meanwhile.
+        let counts_little = || {
+            let watch = Stopwatch::start();
+            std::thread::sleep(std::time::Duration::from_millis(100));
+            watch.seconds() < 0.05
+        };
+        assert!(!cfg!(unix) || (0..20).any(|_| counts_little()));
     }
 
     #[test]
