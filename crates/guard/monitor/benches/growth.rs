@@ -21,7 +21,7 @@ const NEAREST_M: f64 = 0.3;
 const FARTHEST_M: f64 = 1.8;
 
 fn main() {
-    let hall = |count: usize| (FARTHEST_M * (count as f64 / 100.0).cbrt().max(NEAREST_M), 1.0);
+    let hall = |count: usize| ((FARTHEST_M * (count as f64 / 100.0).cbrt()).max(2.0 * NEAREST_M), 1.0);
     growth("regions of a larger hall", hall);
     growth("regions of a crowded cell", |count| (FARTHEST_M, (100.0 / count as f64).cbrt().min(1.0)));
 }
@@ -33,7 +33,8 @@ fn growth(title: &str, shell: impl Fn(usize) -> (f64, f64)) {
     let table = GrowthTable::start(title, &columns);
     for count in [1, 10, 100, 1_000, 10_000, 100_000] {
         let (farthest_m, scale) = shell(count);
-        let given = regions(count, (NEAREST_M, farthest_m), scale);
+        // As many in each part of the volume.
+        let given = regions(count, |r| r.between(NEAREST_M.powi(3), farthest_m.powi(3)).cbrt(), scale);
         let counter = AllocationCounter::start();
         let watch = Stopwatch::start();
         let mut m = monitor(given.clone(), Laws::default());

@@ -52,14 +52,14 @@ fn main() {
     // A fifth of the speed of the motion, and all of it.
     let (slow, fast) = (SLOW_S, TICK_S);
     measure("none", vec![], Laws::default(), slow);
-    let free = untouched(regions(4000, (0.3, 1.8), 1.0), 1000);
+    let free = untouched(regions(4000, |r| r.between(0.3, 1.8), 1.0), 1000);
     measure("100 around the arm, never touched", free[..100].to_vec(), Laws::default(), slow);
     measure("1,000 around the arm, never touched", free.clone(), Laws::default(), slow);
     measure("1,000 around the arm, never touched, all laws", free, all.clone(), slow);
-    let touched = regions(1000, (0.3, 1.6), 1.0);
+    let touched = regions(1000, |r| r.between(0.3, 1.6), 1.0);
     measure("1,000 around the arm, often touched", touched.clone(), Laws::default(), slow);
     measure("1,000 around the arm, often touched, all laws", touched.clone(), all.clone(), slow);
     measure("1,000 often touched, fast", touched.clone(), Laws::default(), fast);
     measure("1,000 often touched, fast, direction-aware", touched, Laws { stopping_distance: None, ..all }, fast);
-    measure("10,000 far (3 to 30 m)", regions(10_000, (3.0, 30.0), 1.0), Laws::default(), slow);
+    measure("10,000 far (3 to 30 m)", regions(10_000, |r| r.between(3.0, 30.0), 1.0), Laws::default(), slow);
 }

@@ -27,12 +27,12 @@ fn velocities(t: f64) -> [f64; 6] {
     std::array::from_fn(|i| (after[i] - before[i]) / (2.0 * h))
 }
 
-/// Spheres, cylinders and boxes of 4 to 20 cm, times `scale`, in a shell around the base of the arm, each with a warning
-/// zone of 10 cm.
-pub fn regions(count: usize, (nearest, farthest): (f64, f64), scale: f64) -> Vec<Region> {
+/// Spheres, cylinders and boxes of 4 to 20 cm, times `scale`, around the base of the arm, each with a warning zone of 10 cm.
+/// `distance` draws how far each is, m.
+pub fn regions(count: usize, mut distance: impl FnMut(&mut XorshiftStar) -> f64, scale: f64) -> Vec<Region> {
     let mut r = XorshiftStar(17);
     let one = |i: usize| {
-        let at = r.direction() * r.between(nearest, farthest) + Vec3::Z * 0.6;
+        let at = r.direction() * distance(&mut r) + Vec3::Z * 0.6;
         let turn = Rotation::from_axis_angle(r.direction(), r.between(-3.0, 3.0));
         let size = scale * r.between(0.02, 0.1);
         let region = match i % 3 {

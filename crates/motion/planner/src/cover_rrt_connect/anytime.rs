@@ -33,7 +33,7 @@ impl AnytimePath {
     fn improve(&mut self, other: JointPath, planning_time: Duration) {
         if other.length_rad < self.path.length_rad {
             self.improvements.push((planning_time, other.length_rad));
-            self.path = JointPath { planning_time, ..other };
+            self.path = JointPath { planning_time, simplification_time: Duration::ZERO, ..other };
         }
     }
 }

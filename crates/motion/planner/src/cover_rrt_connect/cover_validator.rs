@@ -32,6 +32,8 @@ pub(super) struct CoverValidator<'m> {
     blocks_before: u64,
     /// Number of questions whether the search must end.
     questions: u64,
+    /// Whether the time was over when the clock was last read.
+    is_over: bool,
     pairs: Vec<NotCertain>,
 }
 
@@ -39,12 +41,23 @@ impl<'m> CoverValidator<'m> {
     pub fn new(model: &'m CoverModel, obstacles: &'m CoverObstacles, robot: RobotId) -> Self {
         let checker = obstacles.checker(model);
         let (deadline, pairs) = (Deadline::new(Instant::now(), Interrupt::default()), Vec::new());
-        Self { checker, model, obstacles, robot, deadline, max_states: 0, blocks_before: 0, questions: 0, pairs }
+        Self {
+            checker,
+            model,
+            obstacles,
+            robot,
+            deadline,
+            max_states: 0,
+            blocks_before: 0,
+            questions: 0,
+            is_over: false,
+            pairs,
+        }
     }
 
     /// Begins a query.
     pub fn begin(&mut self, deadline: Deadline, max_states: u64) {
-        self.deadline = deadline;
+        self.extend_deadline(deadline);
         self.max_states = max_states;
         self.blocks_before = self.checker.blocks();
     }
@@ -52,6 +65,7 @@ impl<'m> CoverValidator<'m> {
     /// Continues a query until another time.
     pub fn extend_deadline(&mut self, deadline: Deadline) {
         self.deadline = deadline;
+        self.is_over = false;
     }
 
     /// Whether it is proven that no path within the ranges joins two configurations. Does not count the tests of the
@@ -121,8 +135,8 @@ impl MotionValidator for CoverValidator<'_> {
 
     fn is_exhausted(&mut self) -> bool {
         self.questions += 1;
-        self.states_checked() > self.max_states
-            || (self.questions.is_multiple_of(QUESTIONS_PER_CLOCK_READING) && self.deadline.is_over())
+        self.is_over |= self.questions.is_multiple_of(QUESTIONS_PER_CLOCK_READING) && self.deadline.is_over();
+        self.is_over || self.states_checked() > self.max_states
     }
 
     fn longest_edge(&self) -> f64 {

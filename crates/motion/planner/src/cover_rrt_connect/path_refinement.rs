@@ -70,6 +70,9 @@ impl<V: MotionValidator> PathRefinement<'_, V> {
             *value += self.random.between(-side, side);
         }
         self.region.clamp(&mut moved);
+        if !self.validator.project(&mut moved) {
+            return false;
+        }
         let gain = edges[0] + edges[1] - length(before, &moved) - length(&moved, after);
         let is_shorter = gain > least_gain
             && self.validator.is_valid_motion(before, &moved)
@@ -89,7 +92,11 @@ mod tests {
     use crate::rrt_connect::JointBounds;
 
     /// Free outside a ball of radius 0.5 about the origin.
-    struct Ball;
+    struct Ball {
+        is_exhausted: bool,
+    }
+
+    const BALL: Ball = Ball { is_exhausted: false };
 
     impl MotionValidator for Ball {
         fn motion_is_free(&mut self, from: &[f64], to: &[f64]) -> bool {
@@ -101,7 +108,7 @@ mod tests {
         }
 
         fn is_exhausted(&mut self) -> bool {
-            false
+            self.is_exhausted
         }
 
         fn longest_edge(&self) -> f64 {
@@ -121,12 +128,31 @@ mod tests {
             let mut path = vec![ends[0].to_vec(), vec![0.1, 1.0, -0.7], ends[1].to_vec()];
             let before = path_length(&path);
             let mut random = Random::new(seed);
-            PathRefinement { validator: &mut Ball, region: &region, random: &mut random }.run(&mut path);
+            PathRefinement { validator: &mut { BALL }, region: &region, random: &mut random }.run(&mut path);
             assert!(path_length(&path) < before);
-            assert!(path.windows(2).all(|edge| Ball.motion_is_free(&edge[0], &edge[1])));
+            assert!(path.windows(2).all(|edge| { BALL }.motion_is_free(&edge[0], &edge[1])));
             assert_eq!((&path[0][..], &path[path.len() - 1][..]), (&ends[0][..], &ends[1][..]));
             sum += path_length(&path) / shortest;
         }
         assert!(sum / 20.0 < 1.1, "{}", sum / 20.0);
+    }
+
+    #[test]
+    fn degenerate_paths_stay_finite_and_an_exhausted_search_changes_nothing() {
+        let bounds = JointBounds::new(&example::arm().unwrap().chain);
+        let [a, b, c] = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]].map(|q| q.to_vec());
+        let region = bounds.sampling_region_of([&a[..], &b[..], &c[..]]);
+        let refine = |path: &[&Vec<f64>], is_exhausted: bool| {
+            let (mut path, mut random) = (path.iter().copied().cloned().collect::<Vec<_>>(), Random::new(1));
+            PathRefinement { validator: &mut Ball { is_exhausted }, region: &region, random: &mut random }
+                .run(&mut path);
+            path
+        };
+        for path in [&[&a][..], &[&a, &a], &[&a, &a, &a], &[&a, &b, &b, &c], &[&a, &a, &b, &c, &c]] {
+            let refined = refine(path, false);
+            assert_eq!((refined.first(), refined.last()), (path.first().copied(), path.last().copied()));
+            assert!(refined.iter().flatten().all(|value| value.is_finite()), "{refined:?}");
+            assert_eq!(refine(path, true), path.iter().copied().cloned().collect::<Vec<_>>());
+        }
     }
 }

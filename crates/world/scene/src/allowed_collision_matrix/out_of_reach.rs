@@ -230,13 +230,13 @@ impl BranchAndBound<'_, '_> {
     }
 
     /// Moves the robots of a pair back to their joint values in another state.
-    fn reset(&mut self, start: &SceneState, pair: [GeometryId; 2]) {
-        for id in pair {
-            if let GeometryId::Link { robot, .. } = id {
-                self.state.chains[robot.0].q.copy_from_slice(&start.chains[robot.0].q);
-                self.scene.robots[robot.0].robot.chain.forward(&mut self.state.chains[robot.0]);
-                self.state.robot_moved(self.scene, robot);
-            }
+    fn reset(&mut self, start: &SceneState, [a, b]: [GeometryId; 2]) {
+        let robot_of = |id| if let GeometryId::Link { robot, .. } = id { Some(robot) } else { None };
+        let (first, second) = (robot_of(a), robot_of(b));
+        for robot in [first, second.filter(|_| second != first)].into_iter().flatten() {
+            self.state.chains[robot.0].q.copy_from_slice(&start.chains[robot.0].q);
+            self.scene.robots[robot.0].robot.chain.forward(&mut self.state.chains[robot.0]);
+            self.state.robot_moved(self.scene, robot);
         }
     }
 
