@@ -94,7 +94,7 @@ const fn rows(table: &'static str) -> [Column; 4] {
         (table, "collision µs", "collision", 0, Dash::Solid),
         (table, "tolerance µs", "tolerance", 2, Dash::Solid),
         (table, "distance µs", "distance", 3, Dash::Solid),
-        (table, "new checker µs", "new checker", 4, Dash::Dotted),
+        (table, "copied checker µs", "copied checker", 4, Dash::Dotted),
     ]
 }
 

@@ -14,7 +14,7 @@ use crate::world_box::{WorldBox, round_up};
 use crate::{CheckerStats, Level, Scene, SceneState};
 
 /// Workspace and statistics of the narrow phase.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct NarrowPhase {
     /// Boxed: its 36 KB would be moved with every checker, and test threads have small stacks.
     workspace: Box<Workspace>,

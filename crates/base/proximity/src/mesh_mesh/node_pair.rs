@@ -59,7 +59,7 @@ impl NodePair {
 const CAPACITY: usize = 8 * 256 + 8 * 16;
 
 /// A stack of pairs of nodes that are still to be expanded.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct NodePairStack {
     entries: [NodePair; CAPACITY],
     len: usize,

@@ -9,7 +9,7 @@ use crate::TriMesh;
 use crate::triangle::{ClosestPoints, triangle_triangle};
 
 /// Up to eight pairs of triangles that are measured together.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct TriangleBatch {
     pub triangles: [(u32, u32); BATCH],
     len: usize,

@@ -28,7 +28,7 @@ pub struct QueryStats {
 }
 
 /// Memory that queries reuse, one per thread. It never allocates, and answers never depend on earlier queries.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Workspace {
     pub(super) stack: NodePairStack,
     pub(super) batch: TriangleBatch,

@@ -30,7 +30,7 @@ const TIMES: [&str; 9] = [
     "collision µs",
     "tolerance µs",
     "distance µs",
-    "new checker µs",
+    "copied checker µs",
     "scene B/each",
     "checker B/each",
     "allocations of a row",

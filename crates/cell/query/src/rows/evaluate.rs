@@ -84,7 +84,8 @@ pub fn evaluate_query(
     query: &Query<'_>,
     take: &mut dyn FnMut(&[QueryRow]) -> bool,
 ) -> Result<QueryEffort, Diagnostic> {
-    evaluate_blocks(states, (states.len(), query.threads), &|block| rows_of_block(scene, states, query, block), take)
+    let new = QueryChecker::new(scene, query.options, query.pairs);
+    evaluate_blocks(states, (states.len(), query.threads), &|block| rows_of_block(&new, states, query, block), take)
 }
 
 /// Like [`evaluate_query`], with the touching triangles of all pairs in contact as rows.
@@ -202,8 +203,9 @@ fn contacts_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, blo
 }
 
 /// The rows of a block. Likely pairs are tested first; the weights are updated from state to state.
-fn rows_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<QueryRow> {
-    let mut checker = QueryChecker::new(scene, query.options, query.pairs);
+fn rows_of_block(new: &QueryChecker<'_>, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<QueryRow> {
+    // In a scene of thousands of objects, making another one would take longer than the rows.
+    let (scene, mut checker) = (new.scene(), new.clone());
     let mut state = query.start.clone();
     let (mut rows, mut times_s) = (Vec::with_capacity(BLOCK), Vec::new());
     for index in block * BLOCK..states.len().min((block + 1) * BLOCK) {

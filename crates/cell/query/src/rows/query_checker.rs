@@ -10,7 +10,7 @@ use super::{QueryKind, QueryPairs, QueryRow};
 /// Answers a query about one state after another, as [`evaluate_query`](super::evaluate_query) does within a block.
 ///
 /// It learns which pairs are likely to collide. The answers are the same, except which of several pairs in contact is
-/// named; `evaluate_query` starts with a new checker after every [`BLOCK`](super::BLOCK) states.
+/// named; `evaluate_query` starts with a checker that has learned nothing after every [`BLOCK`](super::BLOCK) states.
 ///
 /// ```
 /// use elbowroom_query::{QueryChecker, QueryKind, QueryPairs};
@@ -20,7 +20,7 @@ use super::{QueryKind, QueryPairs, QueryRow};
 /// let row = checker.row(&SceneState::new(&scene), QueryKind::Distance);
 /// assert!(!row.collides && row.distance_m.unwrap() > 0.0);
 /// ```
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct QueryChecker<'s> {
     checker: Checker<'s>,
     sides: Vec<[Selection; 2]>,

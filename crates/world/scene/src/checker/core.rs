@@ -8,7 +8,7 @@ use crate::narrow_phase::{NarrowPhase, PlacedModel};
 use crate::{Level, Scene, SceneState};
 
 /// Scene, settings and workspace of a checker, without the pair lists.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct CheckerCore<'s> {
     pub scene: &'s Scene,
     pub options: CheckerOptions,

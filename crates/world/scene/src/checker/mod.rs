@@ -55,6 +55,13 @@ pub struct Checker<'s> {
     sweeper: Option<Box<Sweeper>>,
 }
 
+impl Clone for Checker<'_> {
+    /// Copies the settings, the statistics and what was learned; the copy makes its memory for sweeps at its first sweep.
+    fn clone(&self) -> Self {
+        Self { core: self.core.clone(), lists: self.lists.clone(), sweeper: None }
+    }
+}
+
 impl<'s> Checker<'s> {
     /// Creates a checker of a scene, ready for queries about all pairs.
     pub fn new(scene: &'s Scene, options: CheckerOptions) -> Self {
