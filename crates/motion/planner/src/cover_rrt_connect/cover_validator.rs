@@ -143,3 +143,28 @@ impl MotionValidator for CoverValidator<'_> {
         EDGE_LENGTH
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use elbowroom_scene::{SceneState, example};
+
+    use super::*;
+
+    #[test]
+    fn a_search_that_is_over_stays_over_until_it_gets_more_time() {
+        let (scene, robot) = (example::two_arms(), RobotId(0));
+        let start = SceneState::new(&scene);
+        let model = CoverModel::new(&scene, &start, robot, 0.0).unwrap();
+        let obstacles = CoverObstacles::new(&model, &scene, &start, 0.0);
+        let mut validator = CoverValidator::new(&model, &obstacles, robot);
+        let interrupt = Interrupt::default();
+        let later = Deadline::new(Instant::now() + Duration::from_secs(3600), interrupt.clone());
+        validator.begin(later.clone(), u64::MAX);
+        assert!((0..100).all(|_| !validator.is_exhausted()));
+        interrupt.set();
+        assert!((0..QUESTIONS_PER_CLOCK_READING).any(|_| validator.is_exhausted()));
+        assert!((0..100).all(|_| validator.is_exhausted()));
+        validator.extend_deadline(Deadline::new(Instant::now() + Duration::from_secs(3600), Interrupt::default()));
+        assert!((0..100).all(|_| !validator.is_exhausted()));
+    }
+}
