@@ -161,7 +161,7 @@ fn dispatch(words: &[&str]) -> Result<(), Failure> {
         ["documents"] => Ok(documents::run(&root)?),
         // It asks the command for its options, so both programs are compiled.
         ["reference", ..] => Ok(suite::devtools(&root, words)?),
-        ["models" | "figures", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
+        ["models" | "figures" | "scaling", ..] | ["fuzz", "cells", ..] => devtools(&root, words, &[]),
         [command, ..] if MEASURING.contains(command) => devtools(&root, words, &["--release"]),
         ["fuzz", "parser" | "cell-file", ..] => devtools(&root, words, &["--release"]),
         ["fuzz"] => fuzz(&root, "60"),
