@@ -254,28 +254,34 @@ fn a_kept_orientation_is_kept_everywhere_on_the_path() {
             }
         }
     }
-    let (mut found, mut bent) = (0, 0);
+    let (mut found, mut bent, mut shorter) = (0, 0, 0);
     for ends in forward.chunks(2) {
         let start = state_at(&scene, ROBOT, &ends[0]);
-        let exact = RrtConnect::new(&scene, ROBOT).unwrap().with_constraint(constraint.clone());
+        let planner = || {
+            let exact = RrtConnect::new(&scene, ROBOT).unwrap().with_constraint(constraint.clone());
+            CoverRrtConnect::new(exact, &covers.0, &covers.1)
+        };
         let limits = RrtConnectSettings { time_limit: Duration::from_secs(4), ..settings(1_000_000) };
-        let path = CoverRrtConnect::new(exact, &covers.0, &covers.1).plan(&start, &ends[1], &limits);
-        let path = match path {
+        let path = match planner().plan(&start, &ends[1], &limits) {
             Ok(path) => path,
             Err(RrtConnectError::NotFound { .. } | RrtConnectError::Disconnected { .. }) => continue,
             Err(e) => panic!("{e}"),
         };
         found += 1;
         bent += usize::from(path.waypoints.len() > 2);
-        assert_free(&scene, &start, &path);
-        for q in along(&path, 200) {
-            let axis = tip(&scene, &q).rotation * Vec3::Z;
-            let angle = axis.cross(Vec3::X).length().atan2(axis.dot(Vec3::X));
-            assert!(angle <= tolerance, "{angle}");
+        let shortened = planner().plan_anytime(&start, &[&ends[1]], &settings(100_000)).map(|answer| answer.path);
+        shorter += usize::from(shortened.as_ref().is_ok_and(|other| other.length_rad < path.length_rad));
+        for path in [Some(path), shortened.ok()].iter().flatten() {
+            assert_free(&scene, &start, path);
+            for q in along(path, 200) {
+                let axis = tip(&scene, &q).rotation * Vec3::Z;
+                let angle = axis.cross(Vec3::X).length().atan2(axis.dot(Vec3::X));
+                assert!(angle <= tolerance, "{angle}");
+            }
         }
     }
-    println!("{found} of 8 found, {bent} with corners");
-    assert!(found >= 6 && bent >= 3, "{found} found, {bent} with corners");
+    println!("{found} of 8 found, {bent} with corners, {shorter} become shorter");
+    assert!(found >= 6 && bent >= 3 && shorter >= 2, "{found} found, {bent} with corners, {shorter} become shorter");
 }
 
 #[test]
