@@ -9,7 +9,8 @@ use fearless_simd::{Simd, f32x16, prelude::*};
 
 use super::block_request::{BlockRequest, BlockResult, NearPair};
 use super::motion_table::MotionTable;
-use super::workspace::{NodeObstacle, Workspace};
+use super::node_obstacles::NodeObstacle;
+use super::workspace::Workspace;
 use crate::lanes::{V3, splat};
 use crate::model::{CoveredRobot, SphereNode};
 use crate::obstacles::{BroadPhase, ObstacleSet, RoundedSolid};
@@ -140,7 +141,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         if self.touches_as_before() {
             return;
         }
-        let mut open = std::mem::take(&mut self.workspace.node_obstacles);
+        let mut open = std::mem::take(&mut self.workspace.node_obstacles.open);
         open.clear();
         if !self.any_root_touches(&mut open) {
             let mut next = 0;
@@ -148,20 +149,20 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
                 next += 1;
             }
         }
-        self.workspace.node_obstacles = open;
+        self.workspace.node_obstacles.open = open;
     }
 
     /// Tests what ended other segments. True if a sphere touches.
     #[inline(always)]
     fn touches_as_before(&mut self) -> bool {
         let mut place = 0;
-        while let Some(pair) = self.workspace.recent_touches.get(place) {
+        while let Some(pair) = self.workspace.node_obstacles.recent(place) {
             let node = &self.model.robot.nodes[pair.node as usize];
             let solid = &self.model.obstacles.outer[pair.obstacle as usize];
             let centre = self.workspace.centre(self.simd, self.model.robot, pair.node);
             let vector = solid.vector_from_core(self.simd, centre).vector;
             if self.certainly_touches(vector, node.touching_m + solid.radius) {
-                self.workspace.recent_touches.touched_again(place);
+                self.workspace.node_obstacles.touched_again(place);
                 return true;
             }
             place += 1;
@@ -242,7 +243,7 @@ impl<S: Simd> Kernel<'_, '_, '_, S> {
         if self.certainly_touches(from.vector, node.touching_m + solid.radius)
             || (is_leaf && self.touching(from.vector, reach) != 0)
         {
-            self.workspace.recent_touches.add(pair);
+            self.workspace.node_obstacles.touched(pair);
             return true;
         }
         let direction = from.vector.plus(from.vector.next_lane());

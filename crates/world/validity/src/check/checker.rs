@@ -118,7 +118,7 @@ impl<'m> ValidityChecker<'m> {
         if body.0 < self.robot.covered_links.len() && obstacle < count {
             self.skipped.resize(self.robot.covered_links.len() * count, false);
             self.skipped[body.0 * count + obstacle] = true;
-            self.workspace.recent_touches.clear();
+            self.workspace.node_obstacles.forget();
         }
     }
 

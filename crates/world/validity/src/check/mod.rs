@@ -9,9 +9,9 @@ mod joint_stretch;
 mod motion_table;
 #[cfg(test)]
 mod motion_tests;
+mod node_obstacles;
 mod pair_table_builder;
 mod placed_centres;
-mod recent_touches;
 mod segment;
 mod several_edges;
 mod single;

@@ -2,18 +2,10 @@
 
 use super::joint_stretch::JointStretch;
 use super::motion_table::MotionTable;
+use super::node_obstacles::NodeObstacles;
 use super::placed_centres::PlacedCentres;
-use super::recent_touches::RecentTouches;
 use crate::lanes::{LANES, Row};
 use crate::model::{CoveredRobot, FrameLanes};
-
-/// A node of a body and an obstacle.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct NodeObstacle {
-    pub body: u32,
-    pub node: u32,
-    pub obstacle: u32,
-}
 
 /// Memory that a check of sixteen configurations writes.
 #[derive(Debug, Clone)]
@@ -43,9 +35,7 @@ pub(crate) struct Workspace {
     pub open: Vec<(u32, u32)>,
     /// Obstacles found by the broad phase.
     pub found: Vec<u32>,
-    pub recent_touches: RecentTouches,
-    /// Nodes whose children are still to visit, each with an obstacle.
-    pub node_obstacles: Vec<NodeObstacle>,
+    pub node_obstacles: NodeObstacles,
     /// Pairs of nodes still to visit.
     pub node_pairs: Vec<(u32, u32)>,
 }
@@ -67,8 +57,7 @@ impl Workspace {
             turned: vec![0.0; robot.chain.steps.len() + 1],
             open: Vec::new(),
             found: Vec::new(),
-            recent_touches: RecentTouches::default(),
-            node_obstacles: Vec::new(),
+            node_obstacles: NodeObstacles::default(),
             node_pairs: Vec::new(),
         }
     }
