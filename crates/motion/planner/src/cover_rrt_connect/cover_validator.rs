@@ -158,13 +158,13 @@ mod tests {
         let obstacles = CoverObstacles::new(&model, &scene, &start, 0.0);
         let mut validator = CoverValidator::new(&model, &obstacles, robot);
         let interrupt = Interrupt::default();
-        let later = Deadline::new(Instant::now() + Duration::from_secs(3600), interrupt.clone());
+        let later = Deadline::new(Instant::now() + Duration::from_hours(1), interrupt.clone());
         validator.begin(later.clone(), u64::MAX);
         assert!((0..100).all(|_| !validator.is_exhausted()));
         interrupt.set();
         assert!((0..QUESTIONS_PER_CLOCK_READING).any(|_| validator.is_exhausted()));
         assert!((0..100).all(|_| validator.is_exhausted()));
-        validator.extend_deadline(Deadline::new(Instant::now() + Duration::from_secs(3600), Interrupt::default()));
+        validator.extend_deadline(Deadline::new(Instant::now() + Duration::from_hours(1), Interrupt::default()));
         assert!((0..100).all(|_| !validator.is_exhausted()));
     }
 }
