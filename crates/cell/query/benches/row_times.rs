@@ -12,7 +12,6 @@ use std::time::Instant;
 use elbowroom_cell::{OutOfReachProofs, QueryModel};
 use elbowroom_formats::robot::{LoadOptions, load};
 use elbowroom_query::{Query, QueryKind, QueryPairs, QueryStates, evaluate_query};
-use elbowroom_scene::CheckerOptions;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
@@ -27,15 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let values = bytes.as_chunks().0.iter().map(|value| f64::from_le_bytes(*value)).collect();
     let (states, pairs) = (QueryStates::of_rows(&model, values), QueryPairs::all());
     for (name, kind) in [("collision", QueryKind::Collision), ("distance", QueryKind::Distance)] {
-        let query = Query {
-            kind,
-            options: CheckerOptions::default(),
-            is_timed: false,
-            pairs: &pairs,
-            all_pairs_m: None,
-            start: &start,
-            threads: NonZeroUsize::new(1),
-        };
+        let query = Query { threads: NonZeroUsize::new(1), ..Query::new(kind, &pairs, &start) };
         let (begin, mut rows) = (Instant::now(), 0);
         evaluate_query(&scene, &states, &query, &mut |block| {
             rows += block.len();

@@ -10,7 +10,6 @@ use elbowroom_query::{MotionRecord, Query, QueryPairs, evaluate_motions};
 use elbowroom_robot::RobotId;
 use elbowroom_robot::collision_pairs;
 use elbowroom_robot::{Collider, GeometryId};
-use elbowroom_scene::CheckerOptions;
 use elbowroom_spatial::Pose;
 use proptest::prelude::*;
 
@@ -230,15 +229,7 @@ fn motions_are_free_until_their_first_contact() {
     let states = QueryStates::parse("q.csv".as_ref(), &text, &model).unwrap();
     let scene = model.scene(OutOfReachProofs::Compute).unwrap();
     let (pairs, start) = (QueryPairs::all(), model.start_state(&scene).unwrap());
-    let query = Query {
-        kind: QueryKind::Time,
-        options: CheckerOptions::default(),
-        is_timed: true,
-        pairs: &pairs,
-        all_pairs_m: None,
-        start: &start,
-        threads: None,
-    };
+    let query = Query { is_timed: true, ..Query::new(QueryKind::Time, &pairs, &start) };
     let mut rows = Vec::new();
     let effort = evaluate_motions(&scene, &states, &query, &mut |block| {
         rows.extend_from_slice(block);

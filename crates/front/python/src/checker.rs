@@ -69,15 +69,8 @@ pub struct Checker {
 
 impl Checker {
     fn query(&self, kind: QueryKind) -> Query<'_> {
-        Query {
-            kind,
-            options: self.options,
-            is_timed: false,
-            pairs: &self.pairs,
-            all_pairs_m: None,
-            start: &self.model.start,
-            threads: self.threads,
-        }
+        let (options, threads) = (self.options, self.threads);
+        Query { options, threads, ..Query::new(kind, &self.pairs, &self.model.start) }
     }
 
     /// Answers a query about every row, block by block.

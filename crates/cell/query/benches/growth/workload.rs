@@ -62,15 +62,7 @@ impl Workload {
     /// Seconds of a query on one thread. `visit` is called after each block of rows.
     pub fn evaluate(&self, states: &QueryStates, kind: QueryKind, visit: &mut dyn FnMut()) -> Result<f64> {
         let (pairs, start) = (QueryPairs::all(), SceneState::new(&self.scene));
-        let query = Query {
-            kind,
-            options: CheckerOptions::default(),
-            is_timed: false,
-            pairs: &pairs,
-            all_pairs_m: None,
-            start: &start,
-            threads: NonZeroUsize::new(1),
-        };
+        let query = Query { threads: NonZeroUsize::new(1), ..Query::new(kind, &pairs, &start) };
         let watch = Stopwatch::start();
         evaluate_query(&self.scene, states, &query, &mut |_| {
             visit();

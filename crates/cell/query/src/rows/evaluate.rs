@@ -36,6 +36,14 @@ pub struct Query<'q> {
     pub threads: Option<NonZeroUsize>,
 }
 
+impl<'q> Query<'q> {
+    /// A query of a row for each state, with the default options, on all cores.
+    pub fn new(kind: QueryKind, pairs: &'q QueryPairs, start: &'q SceneState) -> Self {
+        let options = CheckerOptions::default();
+        Self { kind, options, is_timed: false, pairs, all_pairs_m: None, start, threads: None }
+    }
+}
+
 /// Like [`evaluate_query`], for all pairs.
 ///
 /// # Errors
@@ -49,8 +57,7 @@ pub fn evaluate(
 ) -> Result<CheckerStats, Diagnostic> {
     let (pairs, start) = (QueryPairs::all(), SceneState::new(scene));
     let options = CheckerOptions { level, ..CheckerOptions::default() };
-    let query =
-        Query { kind, options, is_timed: false, pairs: &pairs, all_pairs_m: None, start: &start, threads: None };
+    let query = Query { options, ..Query::new(kind, &pairs, &start) };
     Ok(evaluate_query(scene, states, &query, take)?.stats)
 }
 
@@ -98,12 +105,8 @@ pub fn evaluate_contacts(
     query: &Query<'_>,
     take: &mut dyn FnMut(&[ContactRow]) -> bool,
 ) -> Result<QueryEffort, Diagnostic> {
-    evaluate_blocks(
-        states,
-        (states.len(), query.threads),
-        &|block| contacts_of_block(scene, states, query, block),
-        take,
-    )
+    let new = Checker::new(scene, CheckerOptions { level: Level::Auto, ..query.options });
+    evaluate_blocks(states, (states.len(), query.threads), &|block| contacts_of_block(&new, states, query, block), take)
 }
 
 /// The rows of a block, and the work.
@@ -178,8 +181,13 @@ pub(crate) fn cores(blocks: usize, most: Option<NonZeroUsize>) -> usize {
 }
 
 /// The touching triangles of a block.
-fn contacts_of_block(scene: &Scene, states: &QueryStates, query: &Query<'_>, block: usize) -> BlockRows<ContactRow> {
-    let mut checker = Checker::new(scene, CheckerOptions { level: Level::Auto, ..query.options });
+fn contacts_of_block(
+    new: &Checker<'_>,
+    states: &QueryStates,
+    query: &Query<'_>,
+    block: usize,
+) -> BlockRows<ContactRow> {
+    let (scene, mut checker) = (new.scene(), new.clone());
     let mut surfaces = ContactSurfaces::new(scene);
     let mut state = query.start.clone();
     let (mut rows, mut times_s) = (Vec::new(), Vec::new());

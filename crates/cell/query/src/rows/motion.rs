@@ -104,11 +104,12 @@ impl Motions<'_> {
         query: &Query<'_>,
         take: &mut dyn FnMut(&[MotionRow]) -> bool,
     ) -> Result<QueryEffort, Diagnostic> {
-        evaluate_blocks(self.from, (self.count, query.threads), &|block| self.block(scene, query, block), take)
+        let new = Checker::new(scene, query.options);
+        evaluate_blocks(self.from, (self.count, query.threads), &|block| self.block(&new, query, block), take)
     }
 
-    fn block(self, scene: &Scene, query: &Query<'_>, block: usize) -> BlockRows<MotionRow> {
-        let mut checker = Checker::new(scene, query.options);
+    fn block(self, new: &Checker<'_>, query: &Query<'_>, block: usize) -> BlockRows<MotionRow> {
+        let (scene, mut checker) = (new.scene(), new.clone());
         let mut state = query.start.clone();
         let (mut rows, mut times_s) = (Vec::with_capacity(BLOCK), Vec::new());
         for index in block * BLOCK..self.count.min((block + 1) * BLOCK) {
